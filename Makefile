@@ -1,0 +1,53 @@
+# `make fly` and `make test` work in a fresh clone with Python 3.11+, pip and make; both can be run again and again.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+PIP    := PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m pip
+
+.PHONY: help fly test lint validate bench aircraft clean
+
+help:
+	@echo "make fly       install, then fly the scenario 'catapult' with its score and plots"
+	@echo "make test      every check and test (ruff, mypy, import-linter, pytest)"
+	@echo "make validate  the longer statistical checks (about 10 minutes)"
+	@echo "make bench     what a step costs"
+	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 (installs AeroSandbox)"
+	@echo "make clean     remove the environment and caches"
+
+fly: $(VENV)/.fly
+	$(BIN)/uavsim fly catapult
+
+test: lint
+	$(BIN)/python -m pytest -q -m "not slow"
+
+lint: $(VENV)/.dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+validate: $(VENV)/.dev
+	$(BIN)/python -m pytest -q -m slow
+
+bench: $(VENV)/.fly
+	$(BIN)/uavsim bench
+
+aircraft: $(VENV)/.dev
+	$(PIP) install -q -e '.[aircraft]'
+	$(BIN)/python scripts/build_aircraft.py aircraft/fw8
+
+# A stamp is only written after a whole installation, so an interrupted one is simply done again.
+$(BIN)/python:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "uavsim needs Python 3.11 or newer; choose one with: make PYTHON=python3.11 …")'
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.fly: pyproject.toml constraints.txt | $(BIN)/python
+	$(PIP) install -q -e .
+	@touch $@
+
+$(VENV)/.dev: pyproject.toml constraints.txt | $(BIN)/python
+	$(PIP) install -q -e '.[dev]'
+	@touch $@ $(VENV)/.fly
+
+clean:
+	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
