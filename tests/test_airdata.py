@@ -1,13 +1,18 @@
 """Air data against published tables and independent codes; every tolerance is that of the authority's own digits."""
 
+import doctest
 import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uavsim import airdata
+
+
+def test_examples():
+    assert doctest.testmod(airdata).failed == 0
 
 
 def vapour_fraction(celsius, pressure, humidity):
@@ -142,6 +147,7 @@ def test_bernoulli_reads_high(speed, excess):
     assert read / speed - 1.0 == pytest.approx(excess, abs=1e-4)
 
 
+@settings(derandomize=True, deadline=None)
 @given(mach=st.floats(1e-3, 1.0), static=st.floats(1e3, 2e5))
 def test_mach_undoes_total_pressure(mach, static):
     """At Mach 1e-3 the rounding of p_t alone may be worth 8e-11 of the Mach number."""
@@ -150,6 +156,7 @@ def test_mach_undoes_total_pressure(mach, static):
     )
 
 
+@settings(derandomize=True, deadline=None)
 @given(ratio=st.floats(1.0, 1.8929), static=st.floats(1e3, 2e5))
 def test_total_pressure_undoes_mach(ratio, static):
     total = ratio * static
@@ -158,6 +165,7 @@ def test_total_pressure_undoes_mach(ratio, static):
     )
 
 
+@settings(derandomize=True, deadline=None)
 @given(mach=st.floats(1e-2, 1.0), temperature=st.floats(150.0, 400.0), static=st.floats(1e3, 2e5))
 def test_airspeed_is_mach_times_speed_of_sound(mach, temperature, static):
     total = airdata.total_pressure(static=static, mach=mach)

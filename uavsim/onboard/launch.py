@@ -1,0 +1,359 @@
+"""Launch detectors, which tell from the specific force that the catapult has fired.
+
+Multi-level time window with threshold. A sample above G1 (`trigger`) at t₀ opens nested windows, the l-th holding the
+first l·n samples from t₀ on, the sample at t₀ included. N counts those above G2 (`threshold`). At the end of each
+window, l = 1 … i (`levels`), the launch is recognised if
+
+    N / (l·n) ≥ k₁          (`ratio`; compared in whole numbers, so that 0.8 of 10 is 8)
+
+If the last window fails, the next sample above G1 may open new ones. Source: the published method that this project
+tests (its multi-level time window and threshold), with G1 ≥ G2 and each signed body axis counted on its own.
+
+Thresholding before counting makes the level depend on the noise: with k₁ = 0.8 the force must exceed G2 by 0.84 σ of
+white noise to be recognised half of the time. Shocks shorter than k₁·n samples, ring included, are not recognised
+unless others follow; a launch must stay above G2 for longer than that.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf
+from typing import Annotated, Literal, get_args
+
+from annotated_types import Gt, Interval, MinLen
+
+Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
+
+GAP_PERIODS = 3.0  # sample periods; a longer gap inside a window abandons it
+_ROUNDING = 1.0 + 1e-6  # –; times are k/rate in floating point, so a gap of exactly three periods may read longer
+
+
+class MultiLevelWindow:
+    """Recognise a launch by the share of samples above a threshold in nested windows.
+
+    Parameters
+    ----------
+    trigger, threshold : float
+        G1 and G2, m/s²; trigger ≥ threshold. A sample counts if it is strictly above.
+    samples : int
+        n, samples of the first window.
+    levels : int
+        i, number of windows.
+    ratio : float
+        k₁, the share of samples above the threshold at which the launch is recognised, 0 < k₁ ≤ 1.
+    axes : tuple of str, or "any"
+        Signed body axes, each with a counter of its own, or the published rule to the letter: one counter of the
+        samples in which the magnitude along any axis exceeds.
+    rearm : bool
+        Whether an axis may trigger again after its last window failed; if not it is dead until `reset`.
+    max_gap : float, optional
+        Longest time between two samples of a window, s. A longer one abandons the window, and the sample after it is
+        looked at as if there had been none. None allows any gap.
+
+    Attributes
+    ----------
+    level, count, total : int
+        Window being filled (or just ended), samples in it above the threshold, and samples in it, of the axis that is
+        furthest; 0 while none is triggered.
+    triggered : bool
+        Whether a window is open or has recognised a launch.
+
+    Raises
+    ------
+    ValueError
+        Settings outside these bounds.
+
+    Notes
+    -----
+    A sample that is NaN along an axis is one that does not exceed there. One whose time is NaN or not later than the
+    last is ignored.
+
+    Examples
+    --------
+    >>> detector = MultiLevelWindow(trigger=45.0, threshold=45.0, samples=2, levels=2, ratio=0.75)
+    >>> [detector.step(0.001 * k, fx, 0.0, -9.8) for k, fx in enumerate((3.0, 60.0, 40.0, 61.0, 62.0, 63.0))]
+    [False, False, False, False, True, False]
+    """
+
+    __slots__ = (
+        "_counters",
+        "_idle",
+        "_lower",
+        "_max_gap",
+        "_only_x",
+        "_recognised",
+        "_t",
+        "_upper_x",
+        "_upper_yz",
+        "count",
+        "level",
+        "total",
+        "triggered",
+    )
+
+    def __init__(
+        self,
+        *,
+        trigger: float,
+        threshold: float,
+        samples: int,
+        levels: int,
+        ratio: float,
+        axes: tuple[Axis, ...] | Literal["any"] = ("+x",),
+        rearm: bool = True,
+        max_gap: float | None = None,
+    ) -> None:
+        _require(trigger >= threshold, "trigger must not be below threshold")
+        _require(samples >= 1 and levels >= 1, "samples and levels must be at least 1")
+        _require(0.0 < ratio <= 1.0, "ratio must be above 0 and at most 1")
+        _require(max_gap is None or max_gap > 0.0, "max_gap must be above 0")
+        if axes != "any":
+            known = get_args(Axis)
+            _require(
+                len(axes) == len(set(axes)) > 0 and all(axis in known for axis in axes),
+                f'axes must be "any" or different ones of {", ".join(known)}',
+            )
+        self._max_gap = inf if max_gap is None else max_gap * _ROUNDING
+        names: tuple[str, ...] = ("any",) if axes == "any" else axes
+        self._counters = tuple(
+            _Counter(
+                name,
+                trigger=trigger,
+                threshold=threshold,
+                samples=samples,
+                levels=levels,
+                ratio=ratio,
+                rearm=rearm,
+            )
+            for name in names
+        )
+        # While every counter is idle, a sample inside these bounds triggers none: most samples need no more than that.
+        limit = {name: trigger if name in names or axes == "any" else inf for name in get_args(Axis)}
+        self._only_x = names == ("+x",)
+        self._upper_x = limit["+x"]
+        self._upper_yz = limit["+y"], limit["+z"]
+        self._lower = -limit["-x"], -limit["-y"], -limit["-z"]
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything: ready for the first sample, whatever its time."""
+        for counter in self._counters:
+            counter.clear()
+        self._t = -inf
+        self._recognised = False
+        self._idle = True
+        self._show(self._counters[0])
+
+    def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
+        """Take one sample; True on the one at which the launch is recognised, then False until `reset`.
+
+        Parameters
+        ----------
+        t : float
+            Time of the sample, s.
+        fx, fy, fz : float
+            Specific force in body axes, m/s².
+        """
+        if not t > self._t:
+            return False
+        if self._idle and fx <= self._upper_x and (self._only_x or self._inside(fx, fy, fz)):
+            self._t = t
+            return False
+        return self._advance(t, (fx, fy, fz))
+
+    def _inside(self, fx: float, fy: float, fz: float) -> bool:
+        (y, z), (lower_x, lower_y, lower_z) = self._upper_yz, self._lower
+        return fx >= lower_x and lower_y <= fy <= y and lower_z <= fz <= z
+
+    def _advance(self, t: float, force: tuple[float, float, float]) -> bool:
+        late = t - self._t > self._max_gap
+        self._t = t
+        if self._recognised:
+            return False
+        busy = 0
+        furthest = self._counters[0]
+        for counter in self._counters:
+            if late:
+                counter.abandon()
+            if counter.add(force):
+                self._recognised = True
+                furthest = counter
+                break
+            busy += counter.total
+            if counter.total > furthest.total:
+                furthest = counter
+        self._idle = busy == 0 and not self._recognised
+        self._show(furthest)
+        return self._recognised
+
+    def _show(self, counter: "_Counter") -> None:
+        self.level, self.count, self.total = counter.level, counter.count, counter.total
+        self.triggered = counter.triggered
+
+
+class _Counter:
+    """The nested windows of one signed axis ("any": of the largest magnitude)."""
+
+    __slots__ = (
+        "_axis",
+        "_dead",
+        "_levels",
+        "_needed",
+        "_of",
+        "_rearm",
+        "_samples",
+        "_sign",
+        "_threshold",
+        "_trigger",
+        "count",
+        "level",
+        "total",
+        "triggered",
+    )
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        trigger: float,
+        threshold: float,
+        samples: int,
+        levels: int,
+        ratio: float,
+        rearm: bool,
+    ) -> None:
+        self._axis = None if name == "any" else "xyz".index(name[1])
+        self._sign = -1.0 if name[0] == "-" else 1.0
+        self._trigger, self._threshold = trigger, threshold
+        self._samples, self._levels = samples, levels
+        self._needed, self._of = Fraction(ratio).limit_denominator().as_integer_ratio()
+        self._rearm = rearm
+        self.clear()
+
+    def clear(self) -> None:
+        self._dead = False
+        self.abandon()
+
+    def abandon(self) -> None:
+        """Give up the windows that are open."""
+        self.level = self.count = self.total = 0
+        self.triggered = False
+
+    def add(self, force: tuple[float, float, float]) -> bool:
+        """Count one sample; True if it ends a window with a sufficient share above the threshold."""
+        f = _largest(force) if self._axis is None else self._sign * force[self._axis]
+        if not self.triggered:
+            if self._dead or not f > self._trigger:
+                self.level = self.count = self.total = 0  # a window that failed is shown until the sample after it
+                return False
+            self.triggered = True
+            self.level, self.count, self.total = 1, 1, 1
+        else:
+            if self.total == self.level * self._samples:
+                self.level += 1
+            self.total += 1
+            if f > self._threshold:
+                self.count += 1
+        if self.total < self.level * self._samples:
+            return False
+        if self.count * self._of >= self._needed * self.total:
+            return True
+        if self.level == self._levels:
+            self.triggered = False
+            self._dead = not self._rearm
+        return False
+
+
+def _largest(force: tuple[float, float, float]) -> float:
+    """Largest magnitude; max() passes over a NaN that does not come first."""
+    fx, fy, fz = force
+    return max(0.0, abs(fx), abs(fy), abs(fz))
+
+
+def _require(condition: bool, message: str) -> None:
+    if not condition:
+        raise ValueError(message)
+
+
+@dataclass(frozen=True, slots=True)
+class DetectorSettings:
+    """Which detector is flown, and its settings in seconds and m/s².
+
+    Attributes
+    ----------
+    kind : str
+        "multi-level-window", the published method.
+    threshold : float
+        G2, m/s². 45.11 is 4.6 g: above a centrifuge run at 4.1 g with its noise, below the weakest launch of 5 g.
+    trigger : float, optional
+        G1, m/s², not below the threshold. None: equal to it.
+    window : float
+        Length of the first window, s; n = round(window·rate), at least 1.
+    levels : int
+        Number of nested windows.
+    ratio : float
+        Share of samples above the threshold that recognises.
+    axes : tuple of str, or "any"
+        Signed body axes, or any of them by magnitude.
+    rearm : bool
+        Whether it triggers again after its last window failed.
+    """
+
+    kind: Literal["multi-level-window"] = "multi-level-window"
+    threshold: Annotated[float, Interval(gt=0.0, le=2000.0)] = 45.11
+    trigger: Annotated[float, Interval(gt=0.0, le=2000.0)] | None = None
+    window: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.018
+    levels: Annotated[int, Interval(ge=1, le=100)] = 4
+    ratio: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.8
+    axes: Annotated[tuple[Axis, ...], MinLen(1)] | Literal["any"] = ("+x",)
+    rearm: bool = True
+
+
+def build(settings: DetectorSettings, rate: Annotated[float, Gt(0.0)]) -> MultiLevelWindow:
+    """Make the detector for an accelerometer of the given rate.
+
+    Parameters
+    ----------
+    settings : DetectorSettings
+        What to build.
+    rate : float
+        Samples a second, Hz.
+
+    Returns
+    -------
+    MultiLevelWindow
+        A detector whose windows are abandoned at gaps above three nominal periods.
+
+    Raises
+    ------
+    ValueError
+        Settings that do not fit together, or a rate that is not above 0.
+    """
+    _require(rate > 0.0, "rate must be above 0 Hz")
+    return MultiLevelWindow(
+        trigger=settings.threshold if settings.trigger is None else settings.trigger,
+        threshold=settings.threshold,
+        samples=max(1, round(settings.window * rate)),
+        levels=settings.levels,
+        ratio=settings.ratio,
+        axes=settings.axes,
+        rearm=settings.rearm,
+        max_gap=GAP_PERIODS / rate,
+    )
+
+
+def default(rate: float = 1000.0) -> MultiLevelWindow:
+    """Make the detector that the packaged scenarios fly, on the body x axis.
+
+    Parameters
+    ----------
+    rate : float
+        Accelerometer samples a second, Hz.
+
+    Examples
+    --------
+    >>> detector = default()
+    >>> steps = [detector.step(0.001 * k, 60.0, 0.0, -9.8) for k in range(20)]
+    >>> steps.index(True)  # the eighteenth sample ends the first window
+    17
+    """
+    return build(DetectorSettings(), rate)
