@@ -1,0 +1,96 @@
+"""What hardware does to a true quantity: accelerometers and pressure sensors as their datasheets describe them.
+
+Frames and units
+    Body axes forward-right-down. SI, radians, kelvin; any other unit is in the name (`range_g`, `waiting_rms_g`).
+    Specific force is what an ideal accelerometer feels: (0, 0, -9.80665) m/s² at rest with z down.
+    Pressures are absolute, Pa.
+
+Time
+    Every device has its own clock: its k-th sample is at φ + k/rate, φ drawn by the seed. Times are simulation
+    time, s. The plant steps at its own dt; between two steps the truth is taken as linear.
+
+Noise
+    A "noise density" n is one-sided, the square root of the power spectral density over positive frequencies:
+    white noise through an equivalent noise bandwidth ENBW has the standard deviation n √(ENBW), and the Allan
+    deviation N/√τ with N = n/√2. A datasheet's figure a conversion is used as such. Drift starts at zero: what a
+    unit is off by when it is switched on is its turn-on offset.
+
+Order of errors
+    On continuous truth: vibration → bandwidth → sampling at the device's own instant (of a conversion: its middle).
+    On the sample: scale → bias and drift → white noise → saturation → quantisation → the part's digital filter.
+
+One description, two readers
+    `preset("lsm6dso32")` is an `AccelerometerDescription`, `preset("bmp390")` a `PressureDescription`: frozen numbers
+    of which the simulator draws a unit and a filter takes its noise model. Settings (`AccelerometerSettings`,
+    `AirDataSettings`) say what a scenario may choose; their `description()` is the part as chosen.
+
+Randomness
+    `Streams(seed, index)` gives each source of noise its own named stream: adding one leaves all others as they were.
+
+Names
+    presets, preset · Streams · Accelerometer, Vibration · PressureSensor, AirDataHead, head_noise · record_at_rest ·
+    the settings and descriptions. The package imports numpy, pandas late, and nothing of uavsim.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sensors.accelerometer import Accelerometer
+    from sensors.bench import record_at_rest
+    from sensors.catalogue import preset, presets
+    from sensors.description import AccelerometerDescription, PressureDescription, PressureMode
+    from sensors.head import AirDataHead, head_noise
+    from sensors.pressure import PressureSensor
+    from sensors.settings import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
+    from sensors.streams import Streams
+    from sensors.vibration import Vibration
+
+__all__ = [
+    "Accelerometer",
+    "AccelerometerDescription",
+    "AccelerometerSettings",
+    "AirDataHead",
+    "AirDataSettings",
+    "PressureDescription",
+    "PressureMode",
+    "PressureSensor",
+    "PressureSettings",
+    "Streams",
+    "Vibration",
+    "VibrationSettings",
+    "head_noise",
+    "preset",
+    "presets",
+    "record_at_rest",
+]
+
+_HOME = {
+    "Accelerometer": "accelerometer",
+    "AccelerometerDescription": "description",
+    "AccelerometerSettings": "settings",
+    "AirDataHead": "head",
+    "AirDataSettings": "settings",
+    "PressureDescription": "description",
+    "PressureMode": "description",
+    "PressureSensor": "pressure",
+    "PressureSettings": "settings",
+    "Streams": "streams",
+    "Vibration": "vibration",
+    "VibrationSettings": "settings",
+    "head_noise": "head",
+    "preset": "catalogue",
+    "presets": "catalogue",
+    "record_at_rest": "bench",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first asked for (PEP 562)."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'sensors' has no attribute {name!r}")
+    return getattr(import_module(f"sensors.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,119 @@
+"""The air-data head: a total and a static pressure sensor, polled by one bus.
+
+        cover            port               sensor, own clock           bus, every 1/rate
+    p_t ──╂── p_t or p_s ───── total  ──── conversion, last finished ──┐
+    p_s ─────────────────┬──── static ──── conversion, last finished ──┴── (t, p_total, p_static, T, t_total, t_static)
+                         └ thermometer
+
+The sensors run freely, so the two values of a row are of different instants and as old as their clocks make them:
+t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
+cover both ports feel the static pressure, wind or not.
+"""
+
+from math import inf
+
+from sensors.clock import Clock
+from sensors.description import Unit
+from sensors.pressure import PressureSensor
+from sensors.settings import AirDataSettings
+from sensors.streams import Streams
+
+Air = tuple[float, float, float]  # true total and static pressure, Pa, and temperature, K
+Row = tuple[float, float, float, float, float, float]
+
+
+class AirDataHead:
+    """Two drawn units and the bus, stepped with the plant when something is due.
+
+    Parameters
+    ----------
+    settings : AirDataSettings
+    streams : Streams
+        Streams "{name}.total. …", "{name}.static. …" and "{name}.poll" are used.
+    covered_until : float
+        When the cover is taken off, s; -inf if it never was on.
+    unit : {"random", "typical", "ideal"}
+        Turn-on errors of both sensors, as of `PressureSensor`.
+    name : str
+        Prefix of its streams, for a second one.
+
+    Attributes
+    ----------
+    due : float
+        Time of the next event inside, s.
+    total, static : PressureSensor
+    covered_until : float
+        May be set during a flight.
+    """
+
+    __slots__ = ("_poll", "covered_until", "due", "static", "total")
+
+    def __init__(
+        self,
+        settings: AirDataSettings,
+        streams: Streams,
+        *,
+        covered_until: float = -inf,
+        unit: Unit = "random",
+        name: str = "air_data",
+    ) -> None:
+        self.total = PressureSensor(
+            settings.total.description(), streams, name=f"{name}.total", offset_pa=settings.total.offset_pa, unit=unit
+        )
+        self.static = PressureSensor(
+            settings.static.description(),
+            streams,
+            name=f"{name}.static",
+            offset_pa=settings.static.offset_pa,
+            unit=unit,
+        )
+        self.covered_until = covered_until
+        self._poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
+        self.due = min(self.total.due, self.static.due, self._poll.due)
+
+    def step(self, t0: float, before: Air, t1: float, now: Air) -> list[Row]:
+        """Go through the events up to plant time `t1` and return the rows polled on the way.
+
+        Parameters
+        ----------
+        t0, t1 : float
+            Two successive plant times, s. To be called when `due` <= t1.
+        before, now : tuple of float
+            True (total pressure Pa, static pressure Pa, temperature K) at t0 and t1, linear between.
+
+        Returns
+        -------
+        list of tuple
+            (t, p_total, p_static, temperature, t_total, t_static): s, Pa, Pa, K, s, s. NaN before a sensor's first
+            finished conversion. The temperature is the static sensor's.
+        """
+        rows: list[Row] = []
+        total, static, poll = self.total, self.static, self._poll
+        due = self.due
+        while due <= t1:
+            w = (due - t0) / (t1 - t0)
+            if due == total.due:
+                felt = 1 if due < self.covered_until else 0
+                total.convert(before[felt] + w * (now[felt] - before[felt]), before[2] + w * (now[2] - before[2]))
+            elif due == static.due:
+                static.convert(before[1] + w * (now[1] - before[1]), before[2] + w * (now[2] - before[2]))
+            else:
+                rows.append(self._read(due))
+                poll.tick()
+            due = min(total.due, static.due, poll.due)
+        self.due = due
+        return rows
+
+    def _read(self, t: float) -> Row:
+        p_total, _, t_total = self.total.latest(t)
+        p_static, temperature, t_static = self.static.latest(t)
+        return t, p_total, p_static, temperature, t_total, t_static
+
+
+def head_noise(settings: AirDataSettings) -> tuple[float, float, float]:
+    """Return what a filter may know of the head: standard deviations (total Pa, static Pa, temperature K) a reading.
+
+    From the same description that the units are drawn from, `noise_scale` and digital filter included.
+    """
+    total, static = settings.total.description(), settings.static.description()
+    return total.noise_sd, static.noise_sd, static.temperature_noise_sd
