@@ -159,7 +159,7 @@ def mach(*, total: Numbers, static: Numbers | float) -> Numbers:
     _require_pressure(ps)
     if _any(pt > _LIMIT_RATIO * ps):
         raise ValueError("the ratio of the pressures is that of a Mach number above 1")
-    number: Numbers = xp.sqrt(2.0 / (GAMMA - 1.0) * _isentropic_rise(_clip(pt - ps), ps, xp))
+    number: Numbers = xp.sqrt(2.0 / (GAMMA - 1.0) * xp.expm1(_EXPONENT * xp.log1p(_clip(pt - ps) / ps)))
     return number
 
 
@@ -298,13 +298,8 @@ def _total_pressure(static: Any, mach: Any, xp: Any = math) -> Any:
     return static + static * xp.expm1(xp.log1p(0.5 * (GAMMA - 1.0) * mach * mach) / _EXPONENT)
 
 
-def _isentropic_rise(difference: Any, static: Any, xp: Any = math) -> Any:
-    """T_t/T − 1 = (p_t/p_s)^(2/7) − 1."""
-    return xp.expm1(_EXPONENT * xp.log1p(difference / static))
-
-
 def _compressible_speed(difference: Any, static: Any, temperature: Any, xp: Any = math) -> Any:
-    return xp.sqrt(_ENTHALPY * temperature * _isentropic_rise(difference, static, xp))
+    return xp.sqrt(_ENTHALPY * temperature * xp.expm1(_EXPONENT * xp.log1p(difference / static)))
 
 
 def _bernoulli_speed(difference: Any, static: Any, temperature: Any, xp: Any = math) -> Any:

@@ -1,0 +1,335 @@
+"""The one loop that joins plant, sensors and onboard on one clock.
+
+    plant --truth--> sensors --readings--> flight computer --commands--> plant
+
+The plant steps at its own interval. After each step every sensor whose sample is due gives it, in the order of the
+time stamps (an accelerometer reading before a pressure reading of the same instant), and the flight computer takes it;
+its commands act from the plant's next step on. This module alone copies numbers from the description of a sensor into
+the settings of a filter.
+"""
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sensors import Accelerometer, AirDataHead, Streams, Vibration
+from uavsim.flight import Flight, frame
+from uavsim.onboard import airspeed, launch
+from uavsim.onboard.flight_computer import Estimate, FlightComputer
+from uavsim.scenario import Scenario, load_scenario
+from uavsim.score import Judged, score
+from uavsim.truth import STANDARD_GRAVITY
+
+if TYPE_CHECKING:
+    from uavsim.plants.jsbsim import JsbsimPlant, JsbsimSettings
+
+STEP_RATE = 1000.0  # Hz, of the plant
+CHUNK = 500  # steps between two looks at the progress
+DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recorded
+DETECTOR_TRAIL = 0.1  # s after recognition until which it is
+MISSED_AFTER = 0.5  # s after the rail's end until which a launch may be recognised
+
+Progress = Callable[[float], None]
+"""Called now and then with the share of the flight that is done, 0 … 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Draws:
+    """What a seed draws besides noise and sensor units."""
+
+    release_time: float  # s
+    force_factor: float
+    plant_seed: int
+
+
+def draw(scenario: Scenario, index: int = 0) -> Draws:
+    """Draw the launch of flight `index` of the campaign `scenario.seed`."""
+    streams = Streams(scenario.seed, index)
+    launcher = scenario.launcher
+    wait = streams("launcher.wait").uniform(launcher.wait_min, launcher.wait_max)
+    spread = launcher.force_spread
+    return Draws(
+        release_time=round(wait * STEP_RATE) / STEP_RATE,
+        force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)),
+        plant_seed=streams.integer("plant"),
+    )
+
+
+class Onboard:
+    """The flight computer of a scenario, fed with readings; keeps what it says.
+
+    The same object serves the loop and the replay of recorded readings, so what a recording gives does not depend on
+    which of the two it came from.
+    """
+
+    def __init__(self, scenario: Scenario, release_time: float) -> None:
+        air = scenario.air_data
+        rate = scenario.accelerometer.description().rate
+        tare = {
+            "covered": (release_time - air.cover_off - air.tare_duration, release_time - air.cover_off),
+            "open": (release_time - air.tare_duration, release_time),
+            "none": None,
+        }[air.tare]
+        self.computer = FlightComputer(
+            scenario.flight_computer,
+            launch.build(scenario.detector, rate),
+            airspeed.build(scenario.estimator, believed_noise(scenario), tare),
+            rate,
+        )
+        self.estimates: list[Estimate] = []
+        self.detections: list[tuple[Any, ...]] = []
+        self._record_from = release_time - DETECTOR_LEAD
+        self._record_to = math.inf
+
+    def accelerometer(self, reading: tuple[float, float, float, float]) -> None:
+        """Take one reading of specific force."""
+        computer = self.computer
+        waiting = computer.state == "waiting"
+        computer.accelerometer(*reading)
+        if self._record_from <= reading[0] <= self._record_to:
+            self._record(reading[0], recognised=waiting and computer.state == "stroke")
+
+    def _record(self, t: float, *, recognised: bool) -> None:
+        d = self.computer.detector
+        self.detections.append((t, d.level, d.count, d.total, d.triggered, recognised))  # type: ignore[attr-defined]
+        if recognised and t >= self._record_from + DETECTOR_LEAD:
+            self._record_to = t + DETECTOR_TRAIL
+
+    def air_data(self, reading: tuple[float, float, float, float, float, float]) -> None:
+        """Take one reading of the head."""
+        estimate = self.computer.air_data(*reading)
+        if estimate is not None:
+            self.estimates.append(estimate)
+
+
+class Cosimulation:
+    """One flight in the loop, advanced in steps of the plant.
+
+    Parameters
+    ----------
+    scenario
+        What to fly.
+    index
+        Number of the flight in the campaign of the scenario's seed.
+    plant
+        Instead of the scenario's own; for tests.
+    """
+
+    def __init__(self, scenario: Scenario, index: int = 0, plant: "JsbsimPlant | None" = None) -> None:
+        self.scenario = scenario
+        self.draws = draw(scenario, index)
+        self.plant = make_plant(scenario, self.draws) if plant is None else plant
+        streams = Streams(scenario.seed, index)
+        release = self.draws.release_time
+        self.vibration = Vibration(
+            scenario.vibration,
+            streams,
+            dt=1.0 / STEP_RATE,
+            release_time=release,
+            plateau=scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor,
+            scale=scenario.accelerometer.vibration_scale,
+        )
+        self.accelerometer = Accelerometer(
+            scenario.accelerometer.description(),
+            streams,
+            dt=1.0 / STEP_RATE,
+            bias=scenario.accelerometer.bias,
+            vibration=self.vibration,
+        )
+        air = scenario.air_data
+        self.head = AirDataHead(
+            air, streams, covered_until=release - air.cover_off if air.tare == "covered" else -math.inf
+        )
+        self.onboard = Onboard(scenario, release)
+        self.readings: list[tuple[float, float, float, float]] = []
+        self.air_readings: list[tuple[float, float, float, float, float, float]] = []
+        self.steps = round(scenario.duration * STEP_RATE)
+        self.ended = ""
+        self.accelerometer.feel(0.0, *self.plant.specific_force())
+
+    def advance(self, steps: int) -> None:
+        """Fly up to `steps` plant steps; `ended` tells why it stopped early."""
+        plant, onboard, head = self.plant, self.onboard, self.head
+        accelerometer, computer = self.accelerometer, self.onboard.computer
+        step, felt, feel, sample = plant.step, plant.specific_force, accelerometer.feel, accelerometer.sample
+        take, keep = onboard.accelerometer, self.readings.append
+        on_rail = plant.on_rail
+        for _ in range(min(steps, self.steps - plant.k)):
+            commands = computer.commands
+            before, t0 = plant.row, plant.t
+            now = step()
+            t = plant.t
+            if not plant.above_ground:
+                self.ended = "crashed" if plant.finite else "diverged"
+                return
+            feel(t, *felt())
+            air = head.step(t0, plant.air(before), t, plant.air(now)) if head.due <= t else ()
+            while accelerometer.due <= t:
+                reading = sample()
+                if air and air[0][0] < reading[0]:
+                    air = self._take_air(air, reading[0])
+                keep(reading)
+                take(reading)
+            if air:
+                self._take_air(air, math.inf)
+            if computer.commands is not commands:
+                plant.command(computer.commands)
+            if on_rail and not plant.on_rail:
+                on_rail = False
+                self.vibration.leave_rail(t)
+        if plant.k >= self.steps and not self.ended:
+            self.ended = "completed" if plant.finite else "diverged"
+
+    def _take_air(self, rows: list[tuple[float, ...]], until: float) -> list[tuple[float, ...]]:
+        """Hand on the rows with a time stamp before `until`; return the rest."""
+        while rows and rows[0][0] < until:
+            row, rows = rows[0], rows[1:]
+            self.air_readings.append(row)
+            self.onboard.air_data(row)
+        return rows
+
+    def finish(self) -> Flight:
+        """Turn what was recorded into a flight with its score."""
+        return _flight(self)
+
+
+def believed_noise(scenario: Scenario) -> airspeed.NoiseModel:
+    """What the estimator believes of the head: the numbers of the description that the simulated units are drawn from."""
+    total, static = scenario.air_data.total.description(), scenario.air_data.static.description()
+    return airspeed.NoiseModel(
+        total_sd=total.noise_sd,
+        static_sd=static.noise_sd,
+        temperature_sd=math.hypot(static.temperature_noise_sd, static.temperature_offset_sd),
+    )
+
+
+def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
+    """Settings of the plant of a scenario's flight."""
+    from uavsim.plants.jsbsim import JsbsimSettings  # noqa: PLC0415 (a replay needs no JSBSim)
+
+    return JsbsimSettings(
+        aircraft=scenario.aircraft,
+        environment=scenario.environment,
+        launcher=scenario.launcher,
+        duration=scenario.duration,
+        release_time=draws.release_time,
+        force_factor=draws.force_factor,
+        random_seed=draws.plant_seed,
+        step_rate=STEP_RATE,
+    )
+
+
+def make_plant(scenario: Scenario, draws: Draws) -> "JsbsimPlant":
+    """Make the plant of a scenario's flight.
+
+    Raises
+    ------
+    ValueError
+        An aircraft or property that does not exist.
+    """
+    from uavsim.plants.jsbsim import JsbsimPlant  # noqa: PLC0415
+
+    return JsbsimPlant(plant_settings(scenario, draws))
+
+
+def fly(
+    scenario: "str | Path | Scenario" = "catapult",
+    *,
+    seed: int | None = None,
+    overrides: Iterable[str] = (),
+    progress: Progress | None = None,
+) -> Flight:
+    """Fly a scenario.
+
+    Parameters
+    ----------
+    scenario
+        A packaged name, the path of a TOML file, or a `Scenario`.
+    seed
+        Instead of the scenario's own.
+    overrides
+        ``KEY=VALUE`` each; only with a name or path.
+    progress
+        Called now and then with the share that is done.
+
+    Returns
+    -------
+    Flight
+        With its tables, events and score, whatever the outcome.
+
+    Raises
+    ------
+    ValueError
+        One line that names file, key and what is allowed.
+    """
+    if isinstance(scenario, Scenario):
+        settings = scenario if seed is None else scenario.with_seed(seed)
+    else:
+        settings = load_scenario(scenario, overrides=overrides, seed=seed)
+    simulation = Cosimulation(settings)
+    while not simulation.ended:
+        simulation.advance(CHUNK)
+        if progress is not None:
+            progress(simulation.plant.k / simulation.steps)
+    return simulation.finish()
+
+
+def replay(flight: Flight) -> Flight:
+    """Feed a flight's own readings through the same onboard code.
+
+    Returns
+    -------
+    Flight
+        Its events and estimates equal the flight's bit for bit; truth, where there is one, is handed through and
+        scores them.
+    """
+    scenario = Scenario.from_dict(flight.scenario)
+    draws = draw(scenario)
+    onboard = Onboard(scenario, draws.release_time)
+    readings = flight.accelerometer.to_numpy().tolist()
+    air = [tuple(row) for row in flight.air_data.to_numpy().tolist()]
+    next_air = 0
+    for row in readings:
+        while next_air < len(air) and air[next_air][0] < row[0]:
+            onboard.air_data(air[next_air])
+            next_air += 1
+        onboard.accelerometer((row[0], row[1], row[2], row[3]))
+    for reading in air[next_air:]:
+        onboard.air_data(reading)
+    tables = dict(flight.tables)
+    tables["estimate"] = frame("estimate", onboard.estimates)
+    tables["detector"] = frame("detector", onboard.detections)
+    tables = {name: tables[name] for name in flight.tables}
+    ended = flight.score.get("outcome", "")
+    judged = Judged(scenario.to_dict(), tables, onboard.computer.events, draws.release_time, ended, _versions())
+    return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged))
+
+
+def _flight(simulation: Cosimulation) -> Flight:
+    plant, onboard = simulation.plant, simulation.onboard
+    truth = plant.truth()
+    tables = {
+        "accelerometer": frame("accelerometer", simulation.readings),
+        "air_data": frame("air_data", simulation.air_readings),
+        "estimate": frame("estimate", onboard.estimates),
+        "detector": frame("detector", onboard.detections),
+    }
+    scenario = simulation.scenario.to_dict()
+    judged = Judged(
+        scenario,
+        {"truth": truth, **tables},
+        onboard.computer.events,
+        simulation.draws.release_time,
+        simulation.ended,
+        _versions(),
+    )
+    result = score(judged)
+    truth["phase"] = judged.phases()
+    return Flight(scenario, {"truth": frame("truth", truth), **tables}, onboard.computer.events, result)
+
+
+def _versions() -> dict[str, str]:
+    return {name: version(name) for name in ("uavsim", "jsbsim", "numpy", "scipy", "filterpy")}

@@ -1,0 +1,271 @@
+"""The flight computer: what the aircraft does with what it notices.
+
+It runs the launch detector on every accelerometer reading and the airspeed estimator on every reading of the air-data
+head, and turns detection into action:
+
+    waiting --launch detected--> stroke --push over, speed gained--> coasting --delay--> wings out --delay--> flying
+                                    |                                                              motor on, airspeed
+                                    +--push over, no speed gained--> rearming --delay--> waiting   and height hold
+
+The end of the stroke is a short mean of f_x that stays below a level. Whether it was a launch tells the speed gained,
+the integral of f_x less its mean on the rail since detection: a knock must not open the wings. In flight the throttle
+holds the ESTIMATED airspeed (proportional-integral), the pitch command holds the height by static pressure
+(proportional; pitch and roll themselves are stabilised inside the aircraft).
+
+Sees readings and time, never truth. Scalar, constant memory.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+from math import isfinite, radians
+from typing import Annotated, Any, Protocol
+
+from annotated_types import Interval
+
+from uavsim import airdata
+
+STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
+LONGEST_STEP = 0.02  # s; a gap between readings counts as no more than this in an integral
+RAIL_BLOCK = 0.5  # s, over which the mean on the rail is taken; the block before the last one is used
+
+Estimate = tuple[float, float, float, float, float, float, bool]
+"""t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid."""
+Commands = tuple[float, float, float, float, float]
+"""Wing (0, 1), throttle (0 … 1), pitch, roll (rad), stabiliser engaged (0, 1)."""
+
+
+class Detector(Protocol):
+    """What the computer asks of a launch detector."""
+
+    def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
+        """Take one reading; True once, on the one that makes the launch recognised."""
+
+    def reset(self) -> None:
+        """Forget everything and watch again."""
+
+
+class Estimator(Protocol):
+    """What the computer asks of an airspeed estimator."""
+
+    def step(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        """Take one reading of the head; None if it is not newer than the last."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightComputerSettings:
+    """When to act, and how the cruise is held.
+
+    Attributes
+    ----------
+    airspeed
+        To hold, m/s.
+    stroke_end_level_g, stroke_end_mean, stroke_end_hold
+        The stroke is over when the mean of f_x over `stroke_end_mean` s has stayed below the level for
+        `stroke_end_hold` s.
+    speed_gain_min
+        Integral of f_x less its rail mean since detection that makes it a launch, m/s.
+    rearm_delay
+        After a detection that was none, s.
+    wing_delay, motor_delay
+        From the end of the stroke to the wings, and from the wings to the motor, s.
+    climb_pitch_deg, level_pitch_deg, height, height_gain
+        Pitch command until cruise height and in level flight, degrees; cruise height above the place of launch, m;
+        pitch for a height error, rad/m.
+    throttle_level, throttle_gain, throttle_rate
+        Throttle in level flight; per m/s of error; per m of integrated error.
+    """
+
+    airspeed: Annotated[float, Interval(ge=10, le=100)] = 32.0
+    stroke_end_level_g: Annotated[float, Interval(ge=0.1, le=10)] = 1.0
+    stroke_end_mean: Annotated[float, Interval(ge=0.001, le=0.1)] = 0.010
+    stroke_end_hold: Annotated[float, Interval(ge=0.001, le=0.5)] = 0.020
+    speed_gain_min: Annotated[float, Interval(ge=0, le=100)] = 10.0
+    rearm_delay: Annotated[float, Interval(ge=0, le=60)] = 1.0
+    wing_delay: Annotated[float, Interval(ge=0, le=5)] = 0.10
+    motor_delay: Annotated[float, Interval(ge=0, le=5)] = 0.30
+    climb_pitch_deg: Annotated[float, Interval(ge=-10, le=30)] = 10.0
+    level_pitch_deg: Annotated[float, Interval(ge=-10, le=15)] = 1.0
+    height: Annotated[float, Interval(ge=5, le=3000)] = 40.0
+    height_gain: Annotated[float, Interval(ge=0, le=0.1)] = 0.01
+    throttle_level: Annotated[float, Interval(ge=0, le=1)] = 0.5
+    throttle_gain: Annotated[float, Interval(ge=0, le=1)] = 0.08
+    throttle_rate: Annotated[float, Interval(ge=0, le=1)] = 0.02
+
+
+class FlightComputer:
+    """One aircraft's computer.
+
+    Parameters
+    ----------
+    settings
+        See `FlightComputerSettings`.
+    detector, estimator
+        What it asks.
+    accelerometer_rate
+        Nominal output data rate, Hz; sets how many readings the short mean of f_x holds.
+
+    Attributes
+    ----------
+    state
+        'waiting', 'stroke', 'rearming', 'coasting', 'wings' or 'flying'.
+    commands
+        The present commands; a new tuple whenever one changes.
+    events
+        What it noticed and did, each a dict with `t`, s, and `event`.
+    """
+
+    def __init__(
+        self, settings: FlightComputerSettings, detector: Detector, estimator: Estimator, accelerometer_rate: float
+    ) -> None:
+        self.settings = settings
+        self.detector = detector
+        self.estimator = estimator
+        self.state = "waiting"
+        self.commands: Commands = (0.0, 0.0, radians(settings.climb_pitch_deg), 0.0, 0.0)
+        self.events: list[dict[str, Any]] = []
+        self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
+        self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
+        self._block_start: float | None = None
+        self._block_sum, self._block_count = 0.0, 0
+        self._rail_means = (0.0, 0.0)
+        self._last = 0.0
+        self._speed_gain = 0.0
+        self._quiet_since: float | None = None
+        self._next_action = 0.0
+        self._reference_pressure: float | None = None
+        self._throttle_integral = settings.throttle_level
+        self._last_estimate = 0.0
+
+    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Take one reading of specific force, m/s^2, body axes."""
+        state = self.state
+        if state == "waiting":
+            self._average_rail(t, fx)
+            if self.detector.step(t, fx, fy, fz):
+                self._detected(t)
+        elif state == "stroke":
+            self._follow_stroke(t, fx)
+        elif state != "flying" and t >= self._next_action:
+            self._act(t)
+
+    def air_data(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        """Take one reading of the head, Pa and K; return the estimate that it leads to."""
+        estimate = self.estimator.step(t, p_total, p_static, temperature, t_total, t_static)
+        if estimate is None:
+            return None
+        if self._reference_pressure is None and isfinite(estimate[5]):
+            self._reference_pressure = estimate[5]
+        if self.state == "flying":
+            self._hold(estimate, temperature)
+        return estimate
+
+    # -- launch ------------------------------------------------------------------------------------------------------
+
+    def _average_rail(self, t: float, fx: float) -> None:
+        """Block means of f_x on the rail; the one before the last holds nothing of a stroke that has just begun."""
+        if self._block_start is None:
+            self._block_start = t
+        elif t - self._block_start >= RAIL_BLOCK and self._block_count:
+            mean = self._block_sum / self._block_count
+            older = self._rail_means[1] if self._rail_means != (0.0, 0.0) else mean
+            self._rail_means = (older, mean)
+            self._block_start, self._block_sum, self._block_count = t, 0.0, 0
+        if fx == fx:  # not NaN
+            self._block_sum += fx
+            self._block_count += 1
+
+    def _detected(self, t: float) -> None:
+        self._note(t, "launch_detected")
+        self.state = "stroke"
+        self._last = t
+        self._speed_gain = 0.0
+        self._quiet_since = None
+        self._recent.clear()
+
+    def _follow_stroke(self, t: float, fx: float) -> None:
+        if fx != fx:
+            return
+        self._speed_gain += (fx - self._rail_means[0]) * min(max(t - self._last, 0.0), LONGEST_STEP)
+        self._last = t
+        recent = self._recent
+        recent.append(fx)
+        if len(recent) < (recent.maxlen or 1) or sum(recent) >= self._level * len(recent):
+            self._quiet_since = None
+        elif self._quiet_since is None:
+            self._quiet_since = t
+        elif t - self._quiet_since >= self.settings.stroke_end_hold:
+            self._stroke_over(t)
+
+    def _stroke_over(self, t: float) -> None:
+        s = self.settings
+        launched = self._speed_gain >= s.speed_gain_min
+        self._note(t, "stroke_end" if launched else "not_a_launch", speed_gain=self._speed_gain)
+        if launched:
+            self.state, self._next_action = "coasting", t + s.wing_delay
+            self._command(engaged=1.0)
+        else:
+            self.state, self._next_action = "rearming", t + s.rearm_delay
+
+    def _act(self, t: float) -> None:
+        """Take the step that was waited for."""
+        if self.state == "coasting":
+            self._note(t, "wings_commanded")
+            self._command(wing=1.0)
+            self.state, self._next_action = "wings", t + self.settings.motor_delay
+        elif self.state == "wings":
+            self._note(t, "motor_on")
+            self._command(throttle=self.settings.throttle_level)
+            self.state, self._last_estimate = "flying", t
+        else:
+            self._note(t, "rearmed")
+            self.detector.reset()
+            self._block_start, self._block_sum, self._block_count = None, 0.0, 0
+            self.state = "waiting"
+
+    # -- cruise ------------------------------------------------------------------------------------------------------
+
+    def _hold(self, estimate: Estimate, temperature: float) -> None:
+        """Airspeed by throttle, height by pitch. Without a valid estimate the throttle stays as it is."""
+        s = self.settings
+        t, airspeed, _, _, _, p_static, valid = estimate
+        dt = min(max(t - self._last_estimate, 0.0), 10 * LONGEST_STEP)
+        self._last_estimate = t
+        throttle = self.commands[1]
+        if valid:
+            error = s.airspeed - airspeed
+            wanted = self._throttle_integral + s.throttle_gain * error
+            throttle = min(max(wanted, 0.0), 1.0)
+            if throttle == wanted or (wanted > 1.0) == (error < 0.0):  # do not wind up against a stop
+                self._throttle_integral += s.throttle_rate * error * dt
+        pitch = self.commands[2]
+        if self._reference_pressure is not None and isfinite(temperature) and p_static > 0.0:
+            height = airdata.pressure_height(
+                static=p_static, reference=self._reference_pressure, temperature=temperature
+            )
+            level, climb = radians(s.level_pitch_deg), radians(s.climb_pitch_deg)
+            pitch = level + s.height_gain * (s.height - height)
+            pitch = min(max(pitch, 2.0 * level - climb), climb)
+        self._command(throttle=throttle, pitch=pitch)
+
+    def _command(
+        self,
+        wing: float | None = None,
+        throttle: float | None = None,
+        pitch: float | None = None,
+        engaged: float | None = None,
+    ) -> None:
+        now = self.commands
+        self.commands = (
+            now[0] if wing is None else wing,
+            now[1] if throttle is None else throttle,
+            now[2] if pitch is None else pitch,
+            now[3],
+            now[4] if engaged is None else engaged,
+        )
+
+    def _note(self, t: float, event: str, **details: float) -> None:
+        self.events.append({"t": t, "event": event, **details})

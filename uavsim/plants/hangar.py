@@ -1,0 +1,45 @@
+"""Where aircraft stand: inside the installed package, or beside it in a checkout.
+
+A wheel carries ``aircraft/`` as ``uavsim/aircraft``; in a checkout it lies beside the package. A user's own aircraft
+is a folder with ``NAME/NAME.xml`` in it, named by its path.
+"""
+
+from difflib import get_close_matches
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent.parent
+
+
+def hangar() -> Path:
+    """Folder that holds the packaged aircraft."""
+    for place in (_PACKAGE / "aircraft", _PACKAGE.parent / "aircraft"):
+        if place.is_dir():
+            return place
+    raise FileNotFoundError(f"no aircraft folder in {_PACKAGE} or beside it; the installation is incomplete")
+
+
+def aircraft() -> list[str]:
+    """Names of the packaged aircraft."""
+    return sorted(p.name for p in hangar().iterdir() if (p / f"{p.name}.xml").is_file())
+
+
+def find_aircraft(model: str) -> Path:
+    """Folder of an aircraft.
+
+    Parameters
+    ----------
+    model
+        A packaged name, or the path of a folder ``…/NAME`` that holds ``NAME.xml``.
+
+    Raises
+    ------
+    ValueError
+        If there is none; the message names the nearest packaged one.
+    """
+    for folder in (hangar() / model, Path(model).expanduser()):
+        if model and (folder / f"{folder.name}.xml").is_file():
+            return folder.resolve()
+    known = aircraft()
+    near = get_close_matches(model, known, n=1, cutoff=0.3)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    raise ValueError(f"unknown aircraft {model!r}; {hint}packaged: {', '.join(known)}; or the path of a folder")

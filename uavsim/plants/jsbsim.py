@@ -1,0 +1,453 @@
+"""JSBSim as a plant: an aircraft on a rail, then in the air, one row of truth a step.
+
+The only module that imports jsbsim, and the only one that knows pounds, feet and slugs. Facts it rests on:
+
+* In one `run()` JSBSim propagates the state first and evaluates forces with it last, so position, velocity, forces and
+  angular acceleration read after a step all belong to its end. The non-gravitational force over mass is then the
+  specific force at the centre of gravity without the one-step lag of JSBSim's own pilot accelerations.
+* At the accelerometer, r from the centre of gravity, is felt besides  w' x r + w x (w x r) + 2 w x r' + r''. The last
+  two act while the wing opens and the centre of gravity moves; they are backward differences over one step.
+* Nodes are looked up once. Each step's raw values are packed into one buffer; SI and derived columns are computed for
+  the whole flight at the end (`truth`), and in the loop only for what a sensor reads (`specific_force`, `air`).
+* Writing a property that does not exist would silently create it, so every name is checked against the catalogue.
+"""
+
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import isfinite, pi, radians
+from operator import itemgetter
+from typing import Any
+
+import numpy as np
+from jsbsim import FGFDMExec, FGLogger, FGPropertyNode, LogLevel, set_logger
+
+from uavsim import airdata
+from uavsim.plants.hangar import find_aircraft
+from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
+from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
+
+FT = 0.3048  # m, exact
+INCH = 0.0254  # m, exact
+LBF = 4.4482216152605  # N, exact
+SLUG = LBF / FT  # kg
+SLUG_FT2 = SLUG * FT**2  # kg m^2
+PSF = LBF / FT**2  # Pa
+RANKINE = 5.0 / 9.0  # K
+
+SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
+WING_OUT = 0.99
+
+_RAW = {
+    "airspeed": ("velocities/vtrue-fps", FT),
+    "mach": ("velocities/mach", 1.0),
+    "p_static": ("atmosphere/P-psf", PSF),
+    "temperature": ("atmosphere/T-R", RANKINE),
+    "force_x": ("forces/fbx-total-lbs", LBF),
+    "force_y": ("forces/fby-total-lbs", LBF),
+    "force_z": ("forces/fbz-total-lbs", LBF),
+    "mass": ("inertia/mass-slugs", SLUG),
+    "cg_x": ("inertia/cg-x-in", INCH),
+    "cg_y": ("inertia/cg-y-in", INCH),
+    "cg_z": ("inertia/cg-z-in", INCH),
+    "p": ("velocities/p-rad_sec", 1.0),
+    "q": ("velocities/q-rad_sec", 1.0),
+    "r": ("velocities/r-rad_sec", 1.0),
+    "p_dot": ("accelerations/pdot-rad_sec2", 1.0),
+    "q_dot": ("accelerations/qdot-rad_sec2", 1.0),
+    "r_dot": ("accelerations/rdot-rad_sec2", 1.0),
+    "north": ("position/from-start-neu-n-ft", FT),
+    "east": ("position/from-start-neu-e-ft", FT),
+    "altitude": ("position/h-sl-ft", FT),
+    "vn": ("velocities/v-north-fps", FT),
+    "ve": ("velocities/v-east-fps", FT),
+    "vd": ("velocities/v-down-fps", FT),
+    "wind_n": ("atmosphere/total-wind-north-fps", FT),
+    "wind_e": ("atmosphere/total-wind-east-fps", FT),
+    "wind_d": ("atmosphere/total-wind-down-fps", FT),
+    "roll": ("attitude/phi-rad", 1.0),
+    "pitch": ("attitude/theta-rad", 1.0),
+    "heading": ("attitude/psi-rad", 1.0),
+    "alpha": ("aero/alpha-rad", 1.0),
+    "beta": ("aero/beta-rad", 1.0),
+    "wing": ("fcs/wing-pos-norm", 1.0),
+    "throttle": ("fcs/throttle-pos-norm", 1.0),
+}
+"""What is read each step: the column, its JSBSim property, and the factor to SI."""
+
+_INDEX = {name: i for i, name in enumerate(_RAW)}
+_ALTITUDE, _WING = _INDEX["altitude"], _INDEX["wing"]
+_AIR = itemgetter(_INDEX["p_static"], _INDEX["mach"], _INDEX["temperature"])
+_MOTION = itemgetter(*(_INDEX[n] for n in ("north", "east", "altitude", "vn", "ve", "vd")))
+_ATTITUDE = itemgetter(*(_INDEX[n] for n in ("roll", "pitch", "heading")))
+_RATES = itemgetter(*(_INDEX[n] for n in ("p", "q", "r")))
+_CG = itemgetter(*(_INDEX[n] for n in ("cg_x", "cg_y", "cg_z")))
+_FELT = itemgetter(
+    *(_INDEX[n] for n in ("force_x", "force_y", "force_z", "mass", "cg_x", "cg_y", "cg_z")),
+    *(_INDEX[n] for n in ("p", "q", "r", "p_dot", "q_dot", "r_dot")),
+)
+_ROW = struct.Struct(f"{len(_RAW) + 1}d")  # and the catapult's force, N
+
+_COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
+Commands = tuple[float, float, float, float, float]
+"""Wing (0 folded, 1 out), throttle (0 … 1), pitch and roll, rad, stabiliser engaged (0, 1)."""
+
+Row = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class JsbsimSettings:
+    """Everything that a JSBSim flight needs; `step_rate` in Hz, the seeds of its turbulence, the drawn launch."""
+
+    aircraft: AircraftSettings
+    environment: EnvironmentSettings
+    launcher: LauncherSettings
+    duration: float
+    release_time: float
+    force_factor: float = 1.0
+    random_seed: int = 1
+    step_rate: float = 1000.0
+
+
+class _Silence(FGLogger):  # type: ignore[misc]  # jsbsim ships no type for its base class
+    """Keeps JSBSim's console chatter to itself; what matters comes back as exceptions and checks."""
+
+    def set_level(self, level: Any) -> None: ...
+    def file_location(self, filename: str, line: int) -> None: ...
+    def message(self, message: str) -> None: ...
+    def format(self, fmt: Any) -> None: ...
+    def flush(self) -> None: ...
+
+
+class JsbsimPlant:
+    """An aircraft that waits on a rail, is catapulted and flies.
+
+    Raises
+    ------
+    ValueError
+        Unknown aircraft; a property that it does not have or that is read-only.
+    """
+
+    def __init__(self, settings: JsbsimSettings) -> None:
+        self.settings = settings
+        self.dt = 1.0 / settings.step_rate
+        self.k = 0
+        self.t = 0.0
+        self._fdm = self._load(settings.aircraft)
+        self._catalogue = _read_catalogue(self._fdm)
+        self._place()
+        self._run: Callable[[], bool] = self._fdm.run
+        self._nodes = [self._node(name) for name, _ in _RAW.values()]
+        self._commands = [self._node(name) for name in _COMMANDS]
+        self._commanded: Commands = (0.0, 0.0, 0.0, 0.0, 0.0)
+        self._eye = tuple(self._value(f"metrics/eyepoint-{axis}-in") for axis in "xyz")
+        self._forces = [
+            (self._node(f"external_reactions/{name}"), unit)
+            for name, unit in (
+                ("push/magnitude", LBF),
+                ("front-shoe-normal/magnitude", -LBF),  # its direction is up, the rail's normal is down
+                ("front-shoe-lateral/magnitude", LBF),
+                ("rear-shoe-normal/magnitude", -LBF),
+                ("rear-shoe-lateral/magnitude", LBF),
+                ("rail-roll/magnitude-lbsft", LBF * FT),
+            )
+        ]
+        self._shoes = tuple(
+            tuple(self._value(f"external_reactions/{end}-shoe-normal/location-{axis}-in") for axis in "xyz")
+            for end in ("front", "rear")
+        )
+        self.row: Row = self._read()
+        self.rail = self._rail()
+        self.on_rail = True
+        self._gust_pending = settings.environment.gust_speed != 0.0
+        self._gust_time: float | None = None
+        self._attended = True
+        self._datum = self.row
+        self._settle()
+        self._buffer = bytearray((round(settings.duration * settings.step_rate) + 2) * _ROW.size)
+        self._size = 0
+        self._ground = settings.environment.ground_elevation / FT
+        self.before: Row = self.row
+        self._offset = self._lever(self.row)
+        self._offset_rate: Vector = (0.0, 0.0, 0.0)
+        self._felt_at: Row = self.row
+        self._record(self.row)
+
+    # -- setting up --------------------------------------------------------------------------------------------------
+
+    def _load(self, aircraft: AircraftSettings) -> FGFDMExec:
+        folder = find_aircraft(aircraft.model)
+        set_logger(_Silence())
+        fdm = FGFDMExec(None)
+        fdm.set_debug_level(0)
+        if not fdm.load_model_with_paths(
+            folder.name, str(folder.parent), str(folder / "engine"), str(folder / "systems"), True
+        ):
+            raise ValueError(f"aircraft {aircraft.model!r}: JSBSim cannot load {folder / (folder.name + '.xml')}")
+        fdm.disable_output()
+        fdm.set_dt(self.dt)
+        return fdm
+
+    def _node(self, name: str) -> FGPropertyNode:
+        if name not in self._catalogue:
+            raise ValueError(f"aircraft {self.settings.aircraft.model!r} lacks the property {name!r} that uavsim needs")
+        node: FGPropertyNode = self._fdm.get_property_manager().get_node(name)
+        return node
+
+    def _value(self, name: str) -> float:
+        return float(self._node(name).get_double_value())
+
+    def _set(self, name: str, value: float) -> None:
+        self._node(name).set_double_value(value)
+
+    def _place(self) -> None:
+        """Initial conditions at rest on the rail, air, wind and turbulence."""
+        s = self.settings
+        air, launcher = s.environment, s.launcher
+        for name in ("simulation/randomseed", "atmosphere/randomseed"):
+            self._set(name, float(s.random_seed))
+        self._set("ic/terrain-elevation-ft", air.ground_elevation / FT)
+        self._set("ic/lat-geod-deg", air.latitude_deg)
+        self._set("ic/h-sl-ft", (air.ground_elevation + launcher.height) / FT)
+        self._set("ic/psi-true-deg", launcher.heading_deg)
+        self._set("ic/theta-deg", launcher.elevation_deg)
+        self._set("atmosphere/delta-T", air.temperature_offset / RANKINE)
+        self._apply(s.aircraft.properties)
+        if not self._fdm.run_ic():
+            raise ValueError(f"aircraft {s.aircraft.model!r}: JSBSim cannot start from rest on the rail")
+        towards = radians(air.wind_from_deg) + pi
+        self._set("atmosphere/wind-north-fps", air.wind_speed * np.cos(towards) / FT)
+        self._set("atmosphere/wind-east-fps", air.wind_speed * np.sin(towards) / FT)
+        if air.turbulence_wind_20ft > 0.0:
+            self._set("atmosphere/turb-type", 3.0)  # MIL-F-8785C Dryden
+            self._set("atmosphere/turbulence/milspec/windspeed_at_20ft_AGL-fps", air.turbulence_wind_20ft / FT)
+            self._set("atmosphere/turbulence/milspec/severity", float(air.turbulence_severity))
+
+    def _apply(self, properties: dict[str, float]) -> None:
+        for name, value in properties.items():
+            where = f"aircraft.properties: {name!r}"
+            access = self._catalogue.get(name)
+            if access is None:
+                near = get_close_matches(name, self._catalogue, n=1, cutoff=0.5)
+                hint = f"; did you mean {near[0]!r}?" if near else ""
+                raise ValueError(f"{where} is no property of {self.settings.aircraft.model!r}{hint}")
+            if "W" not in access:
+                raise ValueError(f"{where} is read-only in JSBSim")
+            self._set(name, value)
+
+    def _rail(self) -> Rail:
+        s = self.settings
+        front, rear = self._shoe_offsets(self.row)
+        return Rail(
+            s.launcher,
+            mass=self.row[_INDEX["mass"]] * SLUG,
+            roll_inertia=self._value("inertia/ixx-slugs_ft2") * SLUG_FT2,
+            gravity=self._value("accelerations/gravity-ft_sec2") * FT,
+            front=front,
+            rear=rear,
+            release_time=s.release_time,
+            force_factor=s.force_factor,
+        )
+
+    def _settle(self) -> None:
+        steps = round(SETTLING_TIME * self.settings.step_rate)
+        for k in range(-steps, 0):
+            self._hold(k * self.dt)
+            self._run()
+            self.row = self._read()
+
+    # -- each step ---------------------------------------------------------------------------------------------------
+
+    def command(self, commands: Commands) -> None:
+        """Set the onboard computer's commands; they act from the next step on."""
+        for node, new, old in zip(self._commands, commands, self._commanded, strict=True):
+            if new != old:
+                node.set_double_value(new)
+        self._commanded = commands
+
+    def step(self) -> Row:
+        """Advance by one step, record it, and return its raw row."""
+        if self._attended:
+            self._attend()
+        self._run()
+        self.before = self.row
+        self.k += 1
+        self.t = self.k / self.settings.step_rate
+        self.row = row = self._read()
+        self._record(row)
+        return row
+
+    def step_unrecorded(self) -> None:
+        """Advance by one step of bare JSBSim: the measure that recording is compared with."""
+        if self._attended:
+            self.row = self._read()
+            self._attend()
+        self._run()
+        self.k += 1
+        self.t = self.k / self.settings.step_rate
+
+    def _read(self) -> Row:
+        return tuple(map(FGPropertyNode.get_double_value, self._nodes))
+
+    def _record(self, row: Row) -> None:
+        _ROW.pack_into(self._buffer, self._size, *row, self.rail.push)
+        self._size += _ROW.size
+
+    def _attend(self) -> None:
+        """Look after what is not always there: the rail, and a gust that waits for the wing."""
+        if self.on_rail:
+            self._hold(self.t)
+        if self._gust_pending:
+            self._watch_for_gust()
+        self._attended = self.on_rail or self._gust_pending
+
+    def _hold(self, time: float) -> None:
+        row = self.row
+        north, east, altitude, vn, ve, vd = _MOTION(row)
+        north0, east0, altitude0, *_ = _MOTION(self._datum)
+        motion = Motion(
+            ((north - north0) * FT, (east - east0) * FT, (altitude0 - altitude) * FT),
+            (vn * FT, ve * FT, vd * FT),
+            _ATTITUDE(row),
+            _RATES(row),
+        )
+        forces = self.rail.forces(time, motion, self._shoe_offsets(row))
+        self.on_rail = self.rail.active
+        self._push(forces if self.on_rail else FREE)
+
+    def _push(self, f: RailForces) -> None:
+        values = (f.axial, f.front_normal, f.front_lateral, f.rear_normal, f.rear_lateral, f.roll_moment)
+        for (node, unit), value in zip(self._forces, values, strict=True):
+            node.set_double_value(value / unit)
+
+    def _shoe_offsets(self, row: Row) -> tuple[Vector, Vector]:
+        """Both shoes relative to the centre of gravity, body axes, m (structural x is aft, z is up)."""
+        x, y, z = _CG(row)
+        front, rear = self._shoes
+        return (
+            ((x - front[0]) * INCH, (front[1] - y) * INCH, (z - front[2]) * INCH),
+            ((x - rear[0]) * INCH, (rear[1] - y) * INCH, (z - rear[2]) * INCH),
+        )
+
+    def _watch_for_gust(self) -> None:
+        air = self.settings.environment
+        if self._gust_time is None:
+            if self.row[_WING] >= WING_OUT:
+                self._gust_time = self.t + air.gust_delay
+        elif self.t >= self._gust_time:
+            towards = radians(self.settings.launcher.heading_deg) + pi
+            gust = "atmosphere/cosine-gust/"
+            self._set(gust + "startup-duration-sec", air.gust_length_s / 2.0)
+            self._set(gust + "steady-duration-sec", 0.0)
+            self._set(gust + "end-duration-sec", air.gust_length_s / 2.0)
+            self._set(gust + "magnitude-ft_sec", air.gust_speed / FT)
+            self._set(gust + "frame", 3.0)  # local north-east-down
+            self._set(gust + "X-velocity-ft_sec", float(np.cos(towards)))
+            self._set(gust + "Y-velocity-ft_sec", float(np.sin(towards)))
+            self._set(gust + "start", 1.0)
+            self._gust_pending = False
+
+    # -- what sensors read -------------------------------------------------------------------------------------------
+
+    def _lever(self, row: Row) -> Vector:
+        x, y, z = _CG(row)
+        eye = self._eye
+        return ((x - eye[0]) * INCH, (eye[1] - y) * INCH, (z - eye[2]) * INCH)
+
+    def specific_force(self) -> Vector:
+        """Specific force at the accelerometer at the end of this step, body axes, m/s^2."""
+        fx, fy, fz, mass, cx, cy, cz, p, q, r, p_dot, q_dot, r_dot = _FELT(self.row)
+        eye = self._eye
+        x, y, z = (cx - eye[0]) * INCH, (eye[1] - cy) * INCH, (cz - eye[2]) * INCH
+        scale = FT / mass
+        turn = p * x + q * y + r * z
+        spin = p * p + q * q + r * r
+        felt = (
+            fx * scale + q_dot * z - r_dot * y + p * turn - spin * x,
+            fy * scale + r_dot * x - p_dot * z + q * turn - spin * y,
+            fz * scale + p_dot * y - q_dot * x + r * turn - spin * z,
+        )
+        old = self._offset
+        if x == old[0] and z == old[2] and self._offset_rate == (0.0, 0.0, 0.0):
+            return felt
+        return self._with_moving_cg(felt, (x, y, z), (p, q, r))
+
+    def _with_moving_cg(self, felt: Vector, offset: Vector, rates: Vector) -> Vector:
+        """Add 2 w x r' + r'' while the centre of gravity moves in the body."""
+        dt, old, old_rate = self.dt, self._offset, self._offset_rate
+        u, v, w = ((new - was) / dt for new, was in zip(offset, old, strict=True))
+        p, q, r = rates
+        self._offset, self._offset_rate = offset, (u, v, w)
+        return (
+            felt[0] + 2.0 * (q * w - r * v) + (u - old_rate[0]) / dt,
+            felt[1] + 2.0 * (r * u - p * w) + (v - old_rate[1]) / dt,
+            felt[2] + 2.0 * (p * v - q * u) + (w - old_rate[2]) / dt,
+        )
+
+    @staticmethod
+    def air(row: Row) -> Vector:
+        """Total pressure, static pressure, Pa, and temperature, K, of a raw row."""
+        static, mach, temperature = _AIR(row)
+        static *= PSF
+        return airdata.total_pressure(static=static, mach=mach), static, temperature * RANKINE
+
+    @property
+    def above_ground(self) -> bool:
+        """Whether the altitude is finite and above the ground."""
+        return self.row[_ALTITUDE] > self._ground
+
+    @property
+    def finite(self) -> bool:
+        """Whether the whole state is finite."""
+        return all(map(isfinite, self.row))
+
+    # -- the record --------------------------------------------------------------------------------------------------
+
+    def truth(self) -> dict[str, np.ndarray]:
+        """Columns of the truth (`uavsim.truth.UNITS`), SI, one value a step."""
+        table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(_RAW) + 1)
+        raw = {name: table[:, i] * factor for i, (name, (_, factor)) in enumerate(_RAW.items())}
+        raw["t"] = np.arange(len(table)) / self.settings.step_rate
+        raw["catapult_force"] = table[:, -1]
+        raw["north"] = raw["north"] - self._datum[_INDEX["north"]] * FT
+        raw["east"] = raw["east"] - self._datum[_INDEX["east"]] * FT
+        raw["rail_s"] = self._travel(raw)
+        raw["p_total"] = np.asarray(airdata.total_pressure(static=raw["p_static"], mach=raw["mach"]))
+        raw["fx"], raw["fy"], raw["fz"] = self._felt_over_time(raw)
+        return raw
+
+    def _travel(self, c: dict[str, np.ndarray]) -> np.ndarray:
+        """Way along the rail, m, kept once the last shoe has left."""
+        rise = c["altitude"] - self._datum[_ALTITUDE] * FT
+        travel = np.stack([c["north"], c["east"], -rise], axis=1) @ np.array(self.rail.along)
+        left = np.flatnonzero(travel >= self.settings.launcher.stroke)
+        if left.size:
+            travel[left[0] :] = travel[left[0]]
+        return travel
+
+    def _felt_over_time(self, c: dict[str, np.ndarray]) -> np.ndarray:
+        """`specific_force` for all rows at once: shape (3, n), m/s^2."""
+        force = np.stack([c["force_x"], c["force_y"], c["force_z"]], axis=1) / c["mass"][:, None]
+        rates = np.stack([c["p"], c["q"], c["r"]], axis=1)
+        turning = np.stack([c["p_dot"], c["q_dot"], c["r_dot"]], axis=1)
+        eye = np.array(self._eye) * INCH
+        offset = np.stack([c["cg_x"] - eye[0], eye[1] - c["cg_y"], c["cg_z"] - eye[2]], axis=1)
+        moving = np.diff(offset, axis=0, prepend=offset[:1]) / self.dt
+        accelerating = np.diff(moving, axis=0, prepend=moving[:1]) / self.dt
+        felt = force + np.cross(turning, offset) + np.cross(rates, np.cross(rates, offset))
+        felt += 2.0 * np.cross(rates, moving) + accelerating
+        return felt.T
+
+
+def _read_catalogue(fdm: FGFDMExec) -> dict[str, str]:
+    """Property names with their access: 'R', 'W' or 'RW'."""
+    entries = fdm.get_property_catalog()
+    lines = entries if isinstance(entries, list) else str(entries).splitlines()
+    catalogue = {}
+    for line in lines:
+        name, _, access = line.strip().rpartition(" ")
+        catalogue[name] = access.strip("()")
+    return catalogue
+
+

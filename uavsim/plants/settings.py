@@ -1,0 +1,94 @@
+"""What a JSBSim flight is told before it starts: aircraft, air and launcher. Free of jsbsim, so scenarios load fast."""
+
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Interval
+
+
+@dataclass(frozen=True, slots=True)
+class AircraftSettings:
+    """The aircraft.
+
+    Attributes
+    ----------
+    model
+        Name of a folder of ``aircraft/``, or the path of such a folder.
+    properties
+        JSBSim properties that are written once before the flight, in JSBSim's own units.
+    """
+
+    model: str = "fw8"
+    properties: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class EnvironmentSettings:
+    """The air and the place.
+
+    Attributes
+    ----------
+    latitude_deg
+        Geodetic latitude, degrees.
+    ground_elevation
+        Of the ground above mean sea level, m.
+    temperature_offset
+        Difference from the standard atmosphere's temperature, K.
+    wind_speed, wind_from_deg
+        Mean wind over the ground, m/s, and the direction it comes from, degrees from north.
+    turbulence_wind_20ft
+        Wind speed at 20 ft that sets the intensity of low-altitude Dryden turbulence (MIL-F-8785C), m/s; 0 is none.
+    turbulence_severity
+        Probability-of-exceedance index of the same model above 2000 ft (1 … 7).
+    gust_speed, gust_length_s, gust_delay
+        One-minus-cosine gust: peak, m/s, positive from ahead; duration, s; start after the wing is out, s.
+    """
+
+    latitude_deg: Annotated[float, Interval(ge=-90, le=90)] = 47.0
+    ground_elevation: Annotated[float, Interval(ge=-400, le=4000)] = 0.0
+    temperature_offset: Annotated[float, Interval(ge=-60, le=40)] = 0.0
+    wind_speed: Annotated[float, Interval(ge=0, le=25)] = 0.0
+    wind_from_deg: Annotated[float, Interval(ge=-360, le=360)] = 0.0
+    turbulence_wind_20ft: Annotated[float, Interval(ge=0, le=25)] = 0.0
+    turbulence_severity: Annotated[int, Interval(ge=1, le=7)] = 3
+    gust_speed: Annotated[float, Interval(ge=-15, le=15)] = 0.0
+    gust_length_s: Annotated[float, Interval(ge=0.1, le=20)] = 2.0
+    gust_delay: Annotated[float, Interval(ge=0, le=600)] = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class LauncherSettings:
+    """Catapult and rail.
+
+    Attributes
+    ----------
+    peak_specific_force_g
+        Specific force along body x that the push gives on its plateau, standard g. The acceleration along the rail
+        is that less g sin(elevation), friction and drag.
+    rise, fall
+        Times in which the push grows to the plateau and dies away, s.
+    stroke
+        Way along the rail over which the aircraft is pushed, m; its end is where the rear shoe leaves.
+    elevation_deg, heading_deg
+        Of the rail, degrees.
+    height
+        Of the aircraft's centre of gravity above the ground before release, m.
+    friction
+        Coulomb coefficient between shoes and rail.
+    force_spread
+        Half-width of the uniform distribution from which a flight's force factor is drawn (0.02: ±2 %).
+    wait_min, wait_max
+        Bounds of the uniform distribution of the waiting time before release, s.
+    """
+
+    peak_specific_force_g: Annotated[float, Interval(ge=0.1, le=40)] = 8.0
+    rise: Annotated[float, Interval(ge=0.001, le=1)] = 0.030
+    fall: Annotated[float, Interval(ge=0.001, le=1)] = 0.060
+    stroke: Annotated[float, Interval(ge=0.6, le=50)] = 5.2
+    elevation_deg: Annotated[float, Interval(ge=0, le=60)] = 12.5
+    heading_deg: Annotated[float, Interval(ge=-360, le=360)] = 0.0
+    height: Annotated[float, Interval(ge=0.3, le=100)] = 1.5
+    friction: Annotated[float, Interval(ge=0, le=0.5)] = 0.01
+    force_spread: Annotated[float, Interval(ge=0, le=0.3)] = 0.02
+    wait_min: Annotated[float, Ge(1.6)] = 2.0
+    wait_max: Annotated[float, Gt(1.6)] = 4.0

@@ -1,0 +1,306 @@
+"""How well: launch timing, airspeed error, consistency of the claimed uncertainty, requirements.
+
+Everything is judged against the plant's truth, by times that come from the truth and never from what was detected:
+
+* true launch: the first truth row at which the aircraft has moved more than 1 mm along the rail after release and does
+  not come back; crossing: the first true f_x above 4.5 g;
+* stroke: 50 ms after the true launch … rail exit; transition: … wing out + 2 s (rail exit + 4 s without a wing);
+  cruise: the rest. Headline figures are over the three together.
+
+Truth is interpolated linearly to the time of an estimate's row. Raw and filtered figures are over the same rows; rows
+that the estimator itself calls invalid count. A value that does not exist is None (null in JSON), never 0.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uavsim.truth import STANDARD_GRAVITY
+
+Array = NDArray[np.float64]
+
+MOVED = 1e-3  # m along the rail: the true launch
+CROSSING = 4.5 * STANDARD_GRAVITY  # m/s^2, lower edge of the paper's recognition range less its tolerance
+STROKE_LEAD = 0.05  # s after the true launch at which scoring begins
+MISSED_AFTER = 0.5  # s after the last shoe has left, until which a launch may be recognised
+WING_OUT = 0.99
+TRANSITION = 2.0  # s after the wing is out
+TRANSITION_FOLDED = 4.0  # s after the rail if the wing never comes out
+LAST = 5.0  # s at the end over which cruise is judged
+SPEED_TOLERANCE = 2.0  # m/s
+BANK_LIMIT = np.pi / 6.0  # rad
+TWO_SIGMA = 1.959964  # standard normal quantile of 97.5 %
+PHASES = ("stroke", "transition", "cruise")
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What is judged: a flight's tables and events, and how it ended.
+
+    Attributes
+    ----------
+    ended
+        Why the loop stopped: 'completed', 'crashed' or 'diverged'.
+    """
+
+    scenario: Mapping[str, Any]
+    tables: Mapping[str, Any]
+    events: list[dict[str, Any]]
+    release_time: float
+    ended: str
+    versions: Mapping[str, str]
+
+    def truth(self, column: str) -> Array:
+        """Truth column as floats."""
+        return np.asarray(self.tables["truth"][column], dtype=float)
+
+    def estimate(self, column: str) -> Array:
+        """Estimate column as floats."""
+        return np.asarray(self.tables["estimate"][column], dtype=float)
+
+    @cached_property
+    def time(self) -> Array:
+        """Times of the truth's rows, s."""
+        return self.truth("t")
+
+    @cached_property
+    def true_time(self) -> float | None:
+        """When the aircraft began to move, s."""
+        moved = self.truth("rail_s") > MOVED
+        moved &= self.time >= self.release_time
+        if not moved.any() or not moved[-1]:
+            return None
+        back = np.flatnonzero(~moved)
+        first = back[-1] + 1 if back.size else 0
+        return float(self.time[first])
+
+    @cached_property
+    def crossing_time(self) -> float | None:
+        """When the true specific force first exceeds 4.5 g, s."""
+        return self._first(self.truth("fx") > CROSSING, self.release_time)
+
+    @cached_property
+    def rail_exit_time(self) -> float | None:
+        """When the last shoe leaves, s: the first row after which the way along the rail no longer changes."""
+        stroke = self.scenario["launcher"]["stroke"]
+        return self._first(self.truth("rail_s") >= stroke, self.release_time)
+
+    @cached_property
+    def wing_out_time(self) -> float | None:
+        """When the wing is out, s."""
+        return self._first(self.truth("wing") >= WING_OUT, -np.inf)
+
+    def _first(self, condition: NDArray[np.bool_], after: float) -> float | None:
+        rows = np.flatnonzero(condition & (self.time >= after))
+        return float(self.time[rows[0]]) if rows.size else None
+
+    @cached_property
+    def detections(self) -> list[float]:
+        """Times at which the detector recognised a launch, s."""
+        return [e["t"] for e in self.events if e["event"] == "launch_detected"]
+
+    @cached_property
+    def detected_time(self) -> float | None:
+        """The detection that counts: the first one not before release, s."""
+        return next((t for t in self.detections if t >= self.release_time), None)
+
+    def event_time(self, name: str) -> float | None:
+        """Time of the first event of that name, s."""
+        return next((e["t"] for e in self.events if e["event"] == name), None)
+
+    @cached_property
+    def edges(self) -> dict[str, tuple[float, float]]:
+        """First and last time of each scored phase, s; phases that were not reached are absent."""
+        true, end = self.true_time, float(self.time[-1]) if self.time.size else 0.0
+        if true is None:
+            return {}
+        start, exit_time = true + STROKE_LEAD, self.rail_exit_time
+        if exit_time is None:
+            return {"stroke": (start, end)}
+        wing = self.wing_out_time
+        cruise = exit_time + TRANSITION_FOLDED if wing is None else max(wing + TRANSITION, exit_time)
+        edges = {"stroke": (start, exit_time), "transition": (exit_time, min(cruise, end))}
+        if cruise < end:
+            edges["cruise"] = (cruise, end)
+        return edges
+
+    def rows(self, time: Array, phase: str | None = None) -> NDArray[np.bool_]:
+        """Which of `time` belong to a phase, or to any."""
+        chosen = np.zeros(time.shape, bool)
+        for name, (first, last) in self.edges.items():
+            if phase in (None, name):
+                chosen |= (time >= first) & ((time < last) | (name == list(self.edges)[-1]))
+        return chosen
+
+    def phases(self) -> NDArray[np.object_]:
+        """Phase of each truth row: 'rail' before scoring begins, then the scored ones."""
+        names = np.full(self.time.shape, "rail", dtype=object)
+        for name in self.edges:
+            names[self.rows(self.time, name)] = name
+        return names
+
+
+def score(flight: Judged) -> dict[str, Any]:
+    """Judge a flight; keys, units and meanings as in `docs/score.md`."""
+    launch = _launch(flight)
+    airspeed = _airspeed(flight)
+    result: dict[str, Any] = {
+        "outcome": outcome(flight),
+        "expected": flight.scenario["expect"],
+        "seed": flight.scenario["seed"],
+        "versions": dict(flight.versions),
+        "launch": launch,
+        "airspeed": airspeed,
+        "pressure": {name: _pressure(flight, name) for name in ("total", "static")},
+        "flight": _flight(flight),
+        "requirements": [],
+    }
+    result["requirements"] = [_requirement(result, r) for r in flight.scenario.get("requirements", ())]
+    return result
+
+
+def outcome(flight: Judged) -> str:
+    """The first that applies: diverged, false_launch, missed_launch, crashed, timeout, cruise."""
+    wings, exit_time, detected = flight.event_time("wings_commanded"), flight.rail_exit_time, flight.detected_time
+    if flight.ended == "diverged":
+        return "diverged"
+    if wings is not None and (exit_time is None or wings < exit_time):
+        return "false_launch"
+    limit = np.inf if exit_time is None else exit_time + MISSED_AFTER
+    if detected is None or detected > limit:
+        return "missed_launch"
+    if flight.ended == "crashed":
+        return "crashed"
+    return "cruise" if _cruises(flight) else "timeout"
+
+
+def _cruises(flight: Judged) -> bool:
+    last = flight.time >= flight.time[-1] - LAST
+    motor = flight.event_time("motor_on")
+    target = flight.scenario["flight_computer"]["airspeed"]
+    return bool(
+        motor is not None
+        and motor <= flight.time[-1] - LAST
+        and np.all(flight.truth("wing")[last] >= WING_OUT)
+        and np.all(np.abs(flight.truth("airspeed")[last] - target) <= SPEED_TOLERANCE)
+        and np.all(np.abs(flight.truth("roll")[last]) < BANK_LIMIT)
+    )
+
+
+def _launch(flight: Judged) -> dict[str, Any]:
+    detected = flight.detected_time
+    return {
+        "release_time": flight.release_time,
+        "true_time": flight.true_time,
+        "crossing_time": flight.crossing_time,
+        "detected_time": detected,
+        "latency": _difference(detected, flight.true_time),
+        "latency_from_crossing": _difference(detected, flight.crossing_time),
+        "false_detections": sum(t < flight.release_time for t in flight.detections),
+        "detector": flight.scenario["detector"]["kind"],
+    }
+
+
+def _airspeed(flight: Judged) -> dict[str, Any]:
+    time = flight.estimate("t")
+    truth = np.interp(time, flight.time, flight.truth("airspeed"))
+    error = flight.estimate("airspeed") - truth
+    raw = flight.estimate("airspeed_raw") - truth
+    sd = flight.estimate("airspeed_sd")
+    valid = flight.estimate("valid")
+    figures = {"": flight.rows(time)} | {name: flight.rows(time, name) for name in PHASES}
+    result = {name: _figures(error[rows], raw[rows], sd[rows], valid[rows]) for name, rows in figures.items()}
+    return {**result.pop(""), **result}
+
+
+def _figures(error: Array, raw: Array, sd: Array, valid: Array) -> dict[str, Any]:
+    """Error figures over the rows at which both the raw and the filtered value exist."""
+    both = np.isfinite(error) & np.isfinite(raw)
+    error, raw, sd, valid = error[both], raw[both], sd[both], valid[both]
+    claimed = sd > 0.0
+    relative = error[claimed] / sd[claimed]
+    rmse, rmse_raw = _rms(error), _rms(raw)
+    return {
+        "rmse": rmse,
+        "rmse_raw": rmse_raw,
+        "reduction_percent": _reduction(rmse, rmse_raw),
+        "bias": _number(error.mean()) if error.size else None,
+        "max_error": _number(np.abs(error).max()) if error.size else None,
+        "nees_mean": _number((relative**2).mean()) if relative.size else None,
+        "coverage_95": _number((np.abs(relative) <= TWO_SIGMA).mean()) if relative.size else None,
+        "valid_fraction": _number(valid.mean()) if valid.size else None,
+        "samples": int(error.size),
+    }
+
+
+def _pressure(flight: Judged, channel: str) -> dict[str, Any]:
+    """Error of a pressure channel after its own mean before launch (given as `bias`) is removed."""
+    name = f"p_{channel}"
+    time = flight.estimate("t")
+    truth = np.interp(time, flight.time, flight.truth(name))
+    error = flight.estimate(name) - truth
+    readings = flight.tables["air_data"]
+    raw_time = np.asarray(readings["t"], dtype=float)
+    at = np.searchsorted(raw_time, time)
+    raw = np.asarray(readings[name], dtype=float)[np.minimum(at, raw_time.size - 1)] - truth
+    air = flight.scenario["air_data"]
+    before = (time < flight.release_time) & np.isfinite(error) & np.isfinite(raw)
+    if air["tare"] == "covered":  # the cover keeps the wind out, so only what follows it compares with the free stream
+        before &= time > flight.release_time - air["cover_off"]
+    if not before.any():
+        return dict.fromkeys(("rmse", "rmse_raw", "reduction_percent", "bias"))
+    rows = flight.rows(time) & np.isfinite(error) & np.isfinite(raw)
+    bias = error[before].mean()
+    rmse, rmse_raw = _rms(error[rows] - bias), _rms(raw[rows] - raw[before].mean())
+    return {
+        "rmse": rmse,
+        "rmse_raw": rmse_raw,
+        "reduction_percent": _reduction(rmse, rmse_raw),
+        "bias": _number(bias),
+    }
+
+
+def _flight(flight: Judged) -> dict[str, Any]:
+    time, speed = flight.time, flight.truth("airspeed")
+    exit_time = flight.rail_exit_time
+    cruise = flight.rows(time, "cruise")
+    after = time >= (np.inf if exit_time is None else exit_time)
+    return {
+        "rail_exit_time": exit_time,
+        "rail_exit_speed": None if exit_time is None else _number(np.interp(exit_time, time, speed)),
+        "wing_out_time": flight.wing_out_time,
+        "cruise_airspeed": _number(speed[cruise].mean()) if cruise.any() else None,
+        "cruise_airspeed_sd": _number(speed[cruise].std()) if cruise.any() else None,
+        "duration": _number(time[-1]) if time.size else None,
+        "rail_exit_altitude": None if exit_time is None else _number(flight.truth("altitude")[after][0]),
+        "lowest_altitude_after_exit": _number(flight.truth("altitude")[after].min()) if after.any() else None,
+    }
+
+
+def _requirement(result: dict[str, Any], wanted: Mapping[str, Any]) -> dict[str, Any]:
+    value: Any = result
+    for part in wanted["key"].split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    low, high = wanted.get("minimum"), wanted.get("maximum")
+    met = isinstance(value, int | float) and (low is None or value >= low) and (high is None or value <= high)
+    return {"key": wanted["key"], "minimum": low, "maximum": high, "value": value, "met": met}
+
+
+def _difference(a: float | None, b: float | None) -> float | None:
+    return None if a is None or b is None else a - b
+
+
+def _rms(error: Array) -> float | None:
+    return _number(np.sqrt(np.mean(error**2))) if error.size else None
+
+
+def _reduction(rmse: float | None, raw: float | None) -> float | None:
+    return None if rmse is None or not raw else 100.0 * (1.0 - rmse / raw)
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None

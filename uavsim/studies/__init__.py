@@ -1,0 +1,1 @@
+"""Many flights. Studies return data; `uavsim.views` draws it."""

@@ -1,0 +1,168 @@
+"""The same scenario flown with several seeds.
+
+Each flight is one process's work from its seed alone, so the result does not depend on how many work or in which order
+they finish. Of every flight its score is kept as one row, and its airspeed error on a common time axis; whole flights
+are kept only where somebody will want to look: the first, and those that did not end as expected.
+"""
+
+import math
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uavsim.cosim import draw, fly
+from uavsim.flight import Flight
+from uavsim.scenario import Scenario
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ERROR_STEP = 0.1  # s, bin of the common time axis of errors
+ERROR_START = -1.0  # s after the true launch at which it begins
+
+Progress = Callable[[int, int], None]
+"""Called with the number of finished flights and of all."""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorTrace:
+    """Airspeed error of one flight against time since the true launch, binned rms, m/s."""
+
+    seed: int
+    filtered: NDArray[np.float64]
+    raw: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What several flights gave.
+
+    Attributes
+    ----------
+    runs
+        A row a flight: index, seed, outcome, what was drawn (`draw.…`) and the score's keys joined by dots.
+    traces
+        Airspeed errors, in the order of `runs`.
+    kept
+        Whole flights by seed.
+    complete
+        False if it was interrupted.
+    wall_time
+        s.
+    """
+
+    scenario: Scenario
+    runs: "pd.DataFrame"
+    traces: list[ErrorTrace]
+    kept: dict[int, Flight]
+    complete: bool
+    wall_time: float
+
+    @property
+    def error_time(self) -> NDArray[np.float64]:
+        """Middles of the bins of `traces`, s after the true launch."""
+        count = max((trace.filtered.size for trace in self.traces), default=0)
+        return ERROR_START + ERROR_STEP * (np.arange(count) + 0.5)
+
+
+def fly_seeds(scenario: Scenario, seeds: list[int], *, workers: int | None = None, progress: Progress) -> Batch:
+    """Fly a scenario once a seed.
+
+    An interrupt (Ctrl-C) ends it early; what was finished is returned with `complete` false.
+    """
+    import pandas as pd  # noqa: PLC0415
+
+    started = time.monotonic()
+    done: dict[int, tuple[dict[str, Any], ErrorTrace, Flight | None]] = {}
+    complete = True
+    try:
+        for position, result in _results(scenario, seeds, workers or os.cpu_count() or 1):
+            done[position] = result
+            progress(len(done), len(seeds))
+    except KeyboardInterrupt:
+        complete = False
+    ordered = [done[position] for position in sorted(done)]
+    return Batch(
+        scenario=scenario,
+        runs=pd.DataFrame([row for row, _, _ in ordered]),
+        traces=[trace for _, trace, _ in ordered],
+        kept={flight.score["seed"]: flight for _, _, flight in ordered if flight is not None},
+        complete=complete,
+        wall_time=time.monotonic() - started,
+    )
+
+
+def _results(
+    scenario: Scenario, seeds: list[int], workers: int
+) -> Iterator[tuple[int, tuple[dict[str, Any], ErrorTrace, Flight | None]]]:
+    if workers == 1 or len(seeds) == 1:
+        for position, seed in enumerate(seeds):
+            yield position, _one(scenario, seed, keep=position == 0)
+        return
+    with ProcessPoolExecutor(min(workers, len(seeds)), mp_context=get_context("spawn")) as pool:
+        waiting: dict[Future[tuple[dict[str, Any], ErrorTrace, Flight | None]], int] = {
+            pool.submit(_one, scenario, seed, keep=position == 0): position for position, seed in enumerate(seeds)
+        }
+        try:
+            for future in as_completed(waiting):
+                yield waiting[future], future.result()
+        except BaseException:
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
+
+
+def _one(scenario: Scenario, seed: int, *, keep: bool) -> tuple[dict[str, Any], ErrorTrace, Flight | None]:
+    """Fly one seed; the whole flight comes back only if somebody will look at it."""
+    own = scenario.with_seed(seed)
+    flight = fly(own)
+    draws = draw(own)
+    row = {
+        "index": 0,
+        "seed": seed,
+        "outcome": flight.score["outcome"],
+        "draw.release_time": draws.release_time,
+        "draw.force_factor": draws.force_factor,
+        **_flat({k: v for k, v in flight.score.items() if k not in ("seed", "outcome", "versions", "requirements")}),
+        "requirements.met": all(r["met"] for r in flight.score["requirements"]),
+    }
+    unexpected = flight.score["outcome"] != flight.score["expected"]
+    return row, _trace(flight), flight if keep or unexpected else None
+
+
+def _flat(value: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, item in value.items():
+        if isinstance(item, dict):
+            flat |= _flat(item, f"{prefix}{key}.")
+        else:
+            flat[prefix + key] = math.nan if item is None else item
+    return flat
+
+
+def _trace(flight: Flight) -> ErrorTrace:
+    true_time = flight.score["launch"]["true_time"]
+    if true_time is None:
+        empty = np.empty(0)
+        return ErrorTrace(flight.score["seed"], empty, empty)
+    estimate, truth = flight.estimate, flight.truth
+    time = estimate["t"].to_numpy(float)
+    airspeed = np.interp(time, truth["t"].to_numpy(), truth["airspeed"].to_numpy())
+    bins = np.floor((time - true_time - ERROR_START) / ERROR_STEP).astype(int)
+    rms = [
+        _binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")
+    ]
+    return ErrorTrace(flight.score["seed"], *rms)
+
+
+def _binned_rms(error: NDArray[np.float64], bins: NDArray[np.int_]) -> NDArray[np.float64]:
+    use = (bins >= 0) & np.isfinite(error)
+    count = np.bincount(bins[use])
+    total = np.bincount(bins[use], error[use] ** 2)
+    return np.sqrt(np.divide(total, count, out=np.full(count.size, np.nan), where=count > 0))

@@ -1,0 +1,95 @@
+"""What a step costs: the flight in the loop against the same JSBSim with the same truth recorded.
+
+Three flights of the same aircraft and launch, JSBSim's own outputs off, advance side by side in chunks:
+
+* in loop: plant, sensors, flight computer, all of it recorded;
+* reference: the plant alone, every truth column recorded at every step, flown by the command tape of the first;
+* bare: the same without recording.
+
+Machines are noisy, so the ratio is the median over pairs of neighbouring chunks, not a quotient of totals. The
+reference must end in the same state bit for bit, or it was not the same flight.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from statistics import median
+from time import perf_counter
+
+from uavsim.cosim import Cosimulation, draw, plant_settings
+from uavsim.plants.jsbsim import Commands, JsbsimPlant
+from uavsim.scenario import Scenario
+
+CHUNK = 500  # plant steps
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """Cost of a step, µs, and the ratios between the three ways to fly it."""
+
+    in_loop: float
+    reference: float
+    bare: float
+    ratio: float
+    ratio_over_bare: float
+    steps: int
+    same_state: bool
+
+
+class _TapedPlant(JsbsimPlant):
+    """A plant that keeps the commands it was given, with the step from which they act."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        super().__init__(plant_settings(scenario, draw(scenario)))
+        self.tape: list[tuple[int, Commands]] = []
+
+    def command(self, commands: Commands) -> None:
+        self.tape.append((self.k, commands))
+        super().command(commands)
+
+
+def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
+    """Fly a scenario three ways at once and compare what a step takes.
+
+    Raises
+    ------
+    ValueError
+        If the flight ends before its time; its last chunks would not compare.
+    """
+    leader = _TapedPlant(scenario)
+    loop = Cosimulation(scenario, plant=leader)
+    reference = JsbsimPlant(plant_settings(scenario, draw(scenario)))
+    bare = JsbsimPlant(plant_settings(scenario, draw(scenario)))
+    times: list[tuple[float, float, float]] = []
+    while leader.k < loop.steps:
+        first = len(leader.tape)
+        start = perf_counter()
+        loop.advance(CHUNK)
+        middle = perf_counter()
+        if loop.ended not in ("", "completed"):
+            raise ValueError(f"{scenario.name}: the flight {loop.ended} at {leader.t:g} s; nothing to compare")
+        tape = leader.tape[first:]
+        begun = perf_counter()
+        _follow(reference, leader.k, tape, reference.step)
+        done = perf_counter()
+        _follow(bare, leader.k, tape, bare.step_unrecorded)
+        times.append((middle - start, done - begun, perf_counter() - done))
+        progress(leader.k / loop.steps)
+    per_step = [1e6 * median(column) / CHUNK for column in zip(*times, strict=True)]
+    return Cost(
+        in_loop=per_step[0],
+        reference=per_step[1],
+        bare=per_step[2],
+        ratio=median(a / b for a, b, _ in times),
+        ratio_over_bare=median(a / c for a, _, c in times),
+        steps=leader.k,
+        same_state=leader.row == reference.row,
+    )
+
+
+def _follow(plant: JsbsimPlant, until: int, tape: list[tuple[int, Commands]], step: Callable[[], object]) -> None:
+    """Fly `plant` to step `until`, giving each command of the tape when its turn comes."""
+    for k, commands in [*tape, (until, None)]:
+        for _ in range(k - plant.k):
+            step()
+        if commands is not None:
+            plant.command(commands)
