@@ -9,14 +9,14 @@ the settings of a filter.
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
-from uavsim.flight import Flight, frame
+from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import Estimate, FlightComputer
 from uavsim.scenario import Scenario, load_scenario
@@ -32,6 +32,10 @@ DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recor
 DETECTOR_TRAIL = 0.1  # s after recognition until which it is
 MISSED_AFTER = 0.5  # s after the rail's end until which a launch may be recognised
 
+Reading = tuple[float, float, float, float]
+"""t, fx, fy, fz."""
+AirReading = tuple[float, float, float, float, float, float]
+"""t, p_total, p_static, temperature, t_total, t_static."""
 Progress = Callable[[float], None]
 """Called now and then with the share of the flight that is done, 0 … 1."""
 
@@ -84,21 +88,21 @@ class Onboard:
         self._record_from = release_time - DETECTOR_LEAD
         self._record_to = math.inf
 
-    def accelerometer(self, reading: tuple[float, float, float, float]) -> None:
+    def accelerometer(self, reading: Reading) -> None:
         """Take one reading of specific force."""
-        computer = self.computer
-        waiting = computer.state == "waiting"
-        computer.accelerometer(*reading)
+        self.computer.accelerometer(*reading)
         if self._record_from <= reading[0] <= self._record_to:
-            self._record(reading[0], recognised=waiting and computer.state == "stroke")
+            self._record(reading[0])
 
-    def _record(self, t: float, *, recognised: bool) -> None:
-        d = self.computer.detector
-        self.detections.append((t, d.level, d.count, d.total, d.triggered, recognised))  # type: ignore[attr-defined]
+    def _record(self, t: float) -> None:
+        computer = self.computer
+        d = computer.detector
+        recognised = bool(computer.events) and computer.events[-1] == {"t": t, "event": "launch_detected"}
+        self.detections.append((t, d.level, d.count, d.total, d.triggered, recognised))
         if recognised and t >= self._record_from + DETECTOR_LEAD:
             self._record_to = t + DETECTOR_TRAIL
 
-    def air_data(self, reading: tuple[float, float, float, float, float, float]) -> None:
+    def air_data(self, reading: AirReading) -> None:
         """Take one reading of the head."""
         estimate = self.computer.air_data(*reading)
         if estimate is not None:
@@ -144,35 +148,33 @@ class Cosimulation:
             air, streams, covered_until=release - air.cover_off if air.tare == "covered" else -math.inf
         )
         self.onboard = Onboard(scenario, release)
-        self.readings: list[tuple[float, float, float, float]] = []
-        self.air_readings: list[tuple[float, float, float, float, float, float]] = []
+        self.readings: list[float] = []  # flat: plain floats cost the collector nothing
+        self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
         self.ended = ""
-        self.accelerometer.feel(0.0, *self.plant.specific_force())
+        self.accelerometer.feel(0.0, self.plant.specific_force())
 
     def advance(self, steps: int) -> None:
         """Fly up to `steps` plant steps; `ended` tells why it stopped early."""
-        plant, onboard, head = self.plant, self.onboard, self.head
-        accelerometer, computer = self.accelerometer, self.onboard.computer
+        plant, onboard, head, accelerometer = self.plant, self.onboard, self.head, self.accelerometer
         step, felt, feel, sample = plant.step, plant.specific_force, accelerometer.feel, accelerometer.sample
-        take, keep = onboard.accelerometer, self.readings.append
+        keep, computer = self.readings.extend, onboard.computer
         on_rail = plant.on_rail
         for _ in range(min(steps, self.steps - plant.k)):
             commands = computer.commands
-            before, t0 = plant.row, plant.t
-            now = step()
+            step()
             t = plant.t
-            if not plant.above_ground:
+            if not plant.aloft:
                 self.ended = "crashed" if plant.finite else "diverged"
                 return
-            feel(t, *felt())
-            air = head.step(t0, plant.air(before), t, plant.air(now)) if head.due <= t else ()
+            feel(t, felt())
+            air = head.step(t, plant.air) if head.due <= t else ()
             while accelerometer.due <= t:
                 reading = sample()
                 if air and air[0][0] < reading[0]:
                     air = self._take_air(air, reading[0])
                 keep(reading)
-                take(reading)
+                onboard.accelerometer(reading)
             if air:
                 self._take_air(air, math.inf)
             if computer.commands is not commands:
@@ -180,15 +182,15 @@ class Cosimulation:
             if on_rail and not plant.on_rail:
                 on_rail = False
                 self.vibration.leave_rail(t)
-        if plant.k >= self.steps and not self.ended:
+        if plant.k >= self.steps:
             self.ended = "completed" if plant.finite else "diverged"
 
-    def _take_air(self, rows: list[tuple[float, ...]], until: float) -> list[tuple[float, ...]]:
+    def _take_air(self, rows: Sequence[AirReading], until: float) -> Sequence[AirReading]:
         """Hand on the rows with a time stamp before `until`; return the rest."""
         while rows and rows[0][0] < until:
-            row, rows = rows[0], rows[1:]
-            self.air_readings.append(row)
-            self.onboard.air_data(row)
+            self.air_readings.extend(rows[0])
+            self.onboard.air_data(rows[0])
+            rows = rows[1:]
         return rows
 
     def finish(self) -> Flight:
@@ -300,8 +302,8 @@ def replay(flight: Flight) -> Flight:
     for reading in air[next_air:]:
         onboard.air_data(reading)
     tables = dict(flight.tables)
-    tables["estimate"] = frame("estimate", onboard.estimates)
-    tables["detector"] = frame("detector", onboard.detections)
+    tables["estimate"] = frame_of_rows("estimate", onboard.estimates)
+    tables["detector"] = frame_of_rows("detector", onboard.detections)
     tables = {name: tables[name] for name in flight.tables}
     ended = flight.score.get("outcome", "")
     judged = Judged(scenario.to_dict(), tables, onboard.computer.events, draws.release_time, ended, _versions())
@@ -312,10 +314,10 @@ def _flight(simulation: Cosimulation) -> Flight:
     plant, onboard = simulation.plant, simulation.onboard
     truth = plant.truth()
     tables = {
-        "accelerometer": frame("accelerometer", simulation.readings),
-        "air_data": frame("air_data", simulation.air_readings),
-        "estimate": frame("estimate", onboard.estimates),
-        "detector": frame("detector", onboard.detections),
+        "accelerometer": frame_of_floats("accelerometer", simulation.readings),
+        "air_data": frame_of_floats("air_data", simulation.air_readings),
+        "estimate": frame_of_rows("estimate", onboard.estimates),
+        "detector": frame_of_rows("detector", onboard.detections),
     }
     scenario = simulation.scenario.to_dict()
     judged = Judged(

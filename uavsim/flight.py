@@ -154,15 +154,28 @@ def load(path: str | os.PathLike[str]) -> Flight:
     return Flight(scenario, tables, events, score)
 
 
-def frame(name: str, columns: "Mapping[str, np.ndarray] | list[tuple[Any, ...]]") -> "pd.DataFrame":
-    """Table `name` from columns or rows, with the columns of `UNITS` in their order."""
+def frame(name: str, columns: "Mapping[str, np.ndarray]") -> "pd.DataFrame":
+    """Table `name` from its columns, in the order of `UNITS`."""
+    import pandas as pd  # noqa: PLC0415
+
+    return pd.DataFrame({column: columns[column] for column in UNITS[name]})
+
+
+def frame_of_rows(name: str, rows: list[tuple[Any, ...]]) -> "pd.DataFrame":
+    """Table `name` from rows of numbers and flags."""
+    import pandas as pd  # noqa: PLC0415
+
+    table = pd.DataFrame.from_records(rows, columns=list(UNITS[name]))
+    return table if rows else table.astype(float)
+
+
+def frame_of_floats(name: str, values: list[float]) -> "pd.DataFrame":
+    """Table `name` from one flat list of floats, row after row."""
+    import numpy as np  # noqa: PLC0415
     import pandas as pd  # noqa: PLC0415
 
     names = list(UNITS[name])
-    if isinstance(columns, list):
-        table = pd.DataFrame.from_records(columns, columns=names)
-        return table if columns else table.astype(float)
-    return pd.DataFrame({column: columns[column] for column in names})
+    return pd.DataFrame(np.array(values, dtype=float).reshape(-1, len(names)), columns=names)
 
 
 # -- folders that are whole or not there -----------------------------------------------------------------------------

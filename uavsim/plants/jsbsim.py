@@ -6,7 +6,7 @@ The only module that imports jsbsim, and the only one that knows pounds, feet an
   angular acceleration read after a step all belong to its end. The non-gravitational force over mass is then the
   specific force at the centre of gravity without the one-step lag of JSBSim's own pilot accelerations.
 * At the accelerometer, r from the centre of gravity, is felt besides  w' x r + w x (w x r) + 2 w x r' + r''. The last
-  two act while the wing opens and the centre of gravity moves; they are backward differences over one step.
+  two act while the wing opens and the centre of gravity moves; they are backward differences of second order.
 * Nodes are looked up once. Each step's raw values are packed into one buffer; SI and derived columns are computed for
   the whole flight at the end (`truth`), and in the loop only for what a sensor reads (`specific_force`, `air`).
 * Writing a property that does not exist would silently create it, so every name is checked against the catalogue.
@@ -83,10 +83,7 @@ _MOTION = itemgetter(*(_INDEX[n] for n in ("north", "east", "altitude", "vn", "v
 _ATTITUDE = itemgetter(*(_INDEX[n] for n in ("roll", "pitch", "heading")))
 _RATES = itemgetter(*(_INDEX[n] for n in ("p", "q", "r")))
 _CG = itemgetter(*(_INDEX[n] for n in ("cg_x", "cg_y", "cg_z")))
-_FELT = itemgetter(
-    *(_INDEX[n] for n in ("force_x", "force_y", "force_z", "mass", "cg_x", "cg_y", "cg_z")),
-    *(_INDEX[n] for n in ("p", "q", "r", "p_dot", "q_dot", "r_dot")),
-)
+_FELT = slice(_INDEX["force_x"], _INDEX["r_dot"] + 1)  # what the specific force is made of stands together in _RAW
 _ROW = struct.Struct(f"{len(_RAW) + 1}d")  # and the catapult's force, N
 
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
@@ -122,6 +119,17 @@ class _Silence(FGLogger):  # type: ignore[misc]  # jsbsim ships no type for its 
 
 class JsbsimPlant:
     """An aircraft that waits on a rail, is catapulted and flies.
+
+    Attributes
+    ----------
+    k, t
+        Steps since the start of the record, and their time, s.
+    row, before
+        Raw values after this step and the one before, in JSBSim's units.
+    on_rail
+        Whether a shoe is still on the rail.
+    aloft
+        Whether the altitude is a number and above the ground.
 
     Raises
     ------
@@ -164,14 +172,14 @@ class JsbsimPlant:
         self._gust_time: float | None = None
         self._attended = True
         self._datum = self.row
+        self.aloft = True
         self._settle()
         self._buffer = bytearray((round(settings.duration * settings.step_rate) + 2) * _ROW.size)
         self._size = 0
         self._ground = settings.environment.ground_elevation / FT
         self.before: Row = self.row
-        self._offset = self._lever(self.row)
-        self._offset_rate: Vector = (0.0, 0.0, 0.0)
-        self._felt_at: Row = self.row
+        self._offsets = (self._lever(self.row),) * 3  # of the sensor from the centre of gravity, newest first
+        self._still = True
         self._record(self.row)
 
     # -- setting up --------------------------------------------------------------------------------------------------
@@ -266,8 +274,8 @@ class JsbsimPlant:
                 node.set_double_value(new)
         self._commanded = commands
 
-    def step(self) -> Row:
-        """Advance by one step, record it, and return its raw row."""
+    def step(self) -> None:
+        """Advance by one step and record it."""
         if self._attended:
             self._attend()
         self._run()
@@ -276,7 +284,7 @@ class JsbsimPlant:
         self.t = self.k / self.settings.step_rate
         self.row = row = self._read()
         self._record(row)
-        return row
+        self.aloft = row[_ALTITUDE] > self._ground  # false too for NaN
 
     def step_unrecorded(self) -> None:
         """Advance by one step of bare JSBSim: the measure that recording is compared with."""
@@ -357,7 +365,7 @@ class JsbsimPlant:
 
     def specific_force(self) -> Vector:
         """Specific force at the accelerometer at the end of this step, body axes, m/s^2."""
-        fx, fy, fz, mass, cx, cy, cz, p, q, r, p_dot, q_dot, r_dot = _FELT(self.row)
+        fx, fy, fz, mass, cx, cy, cz, p, q, r, p_dot, q_dot, r_dot = self.row[_FELT]
         eye = self._eye
         x, y, z = (cx - eye[0]) * INCH, (eye[1] - cy) * INCH, (cz - eye[2]) * INCH
         scale = FT / mass
@@ -368,34 +376,35 @@ class JsbsimPlant:
             fy * scale + r_dot * x - p_dot * z + q * turn - spin * y,
             fz * scale + p_dot * y - q_dot * x + r * turn - spin * z,
         )
-        old = self._offset
-        if x == old[0] and z == old[2] and self._offset_rate == (0.0, 0.0, 0.0):
+        newest = self._offsets[0]
+        if self._still and x == newest[0] and z == newest[2]:
             return felt
         return self._with_moving_cg(felt, (x, y, z), (p, q, r))
 
     def _with_moving_cg(self, felt: Vector, offset: Vector, rates: Vector) -> Vector:
         """Add 2 w x r' + r'' while the centre of gravity moves in the body."""
-        dt, old, old_rate = self.dt, self._offset, self._offset_rate
-        u, v, w = ((new - was) / dt for new, was in zip(offset, old, strict=True))
+        history = zip(offset, *self._offsets, strict=True)
+        moving = [_derivatives(*values, self.dt) for values in history]
+        (u, u_dot), (v, v_dot), (w, w_dot) = moving
         p, q, r = rates
-        self._offset, self._offset_rate = offset, (u, v, w)
+        a, b, _ = self._offsets
+        self._offsets = (offset, a, b)
+        self._still = offset == a == b
         return (
-            felt[0] + 2.0 * (q * w - r * v) + (u - old_rate[0]) / dt,
-            felt[1] + 2.0 * (r * u - p * w) + (v - old_rate[1]) / dt,
-            felt[2] + 2.0 * (p * v - q * u) + (w - old_rate[2]) / dt,
+            felt[0] + 2.0 * (q * w - r * v) + u_dot,
+            felt[1] + 2.0 * (r * u - p * w) + v_dot,
+            felt[2] + 2.0 * (p * v - q * u) + w_dot,
         )
 
-    @staticmethod
-    def air(row: Row) -> Vector:
-        """Total pressure, static pressure, Pa, and temperature, K, of a raw row."""
-        static, mach, temperature = _AIR(row)
-        static *= PSF
-        return airdata.total_pressure(static=static, mach=mach), static, temperature * RANKINE
-
-    @property
-    def above_ground(self) -> bool:
-        """Whether the altitude is finite and above the ground."""
-        return self.row[_ALTITUDE] > self._ground
+    def air(self, time: float) -> Vector:
+        """Total pressure, static pressure, Pa, and temperature, K, at a `time` within the last step, linear in it."""
+        past = (self.t - time) / self.dt
+        static, mach, temperature = _AIR(self.row)
+        static0, mach0, temperature0 = _AIR(self.before)
+        static = (static + past * (static0 - static)) * PSF
+        mach += past * (mach0 - mach)
+        temperature = (temperature + past * (temperature0 - temperature)) * RANKINE
+        return airdata._total_pressure(static, mach), static, temperature
 
     @property
     def finite(self) -> bool:
@@ -433,11 +442,18 @@ class JsbsimPlant:
         turning = np.stack([c["p_dot"], c["q_dot"], c["r_dot"]], axis=1)
         eye = np.array(self._eye) * INCH
         offset = np.stack([c["cg_x"] - eye[0], eye[1] - c["cg_y"], c["cg_z"] - eye[2]], axis=1)
-        moving = np.diff(offset, axis=0, prepend=offset[:1]) / self.dt
-        accelerating = np.diff(moving, axis=0, prepend=moving[:1]) / self.dt
+        earlier = np.concatenate([np.repeat(offset[:1], 3, axis=0), offset])
+        moving, accelerating = _derivatives(offset, earlier[2:-1], earlier[1:-2], earlier[:-3], self.dt)
         felt = force + np.cross(turning, offset) + np.cross(rates, np.cross(rates, offset))
         felt += 2.0 * np.cross(rates, moving) + accelerating
         return felt.T
+
+
+def _derivatives(now: Any, before: Any, two_before: Any, three_before: Any, dt: float) -> tuple[Any, Any]:
+    """First and second derivative at the newest of four equidistant values, backward differences of second order."""
+    first = (3.0 * now - 4.0 * before + two_before) / (2.0 * dt)
+    second = (2.0 * now - 5.0 * before + 4.0 * two_before - three_before) / dt**2
+    return first, second
 
 
 def _read_catalogue(fdm: FGFDMExec) -> dict[str, str]:

@@ -7,7 +7,7 @@ then on only a stop behind the shoes is left, which pushes but does not pull. Th
     F(t) = m g0 n(t),   n rises linearly to its plateau, stays, and falls linearly to 0 at the end of the stroke,
 
 where the fall begins at the first moment at which the remaining way is no longer than what the aircraft will run
-while the push dies away: v t_fall + a t_fall^2 / 3. The front shoe leaves first; for the time that the rear one
+while the push dies away: v t_fall + (n g0 / 3 - g sin(theta) / 2) t_fall^2. The front shoe leaves first; for the time that the rear one
 still holds, gravity turns the nose down (tip-off).
 
 Everything is SI; the rail's frame is (along, right, down), the body's (forward, right, down).
@@ -20,6 +20,7 @@ from uavsim.plants.settings import LauncherSettings
 from uavsim.truth import STANDARD_GRAVITY
 
 CONTACT_FREQUENCY = 40.0  # Hz, of the aircraft on its shoes: stiff, and stable at a step of 1 ms
+ROLL_FREQUENCY = 15.0  # Hz, of the aircraft held in roll by the shoes' width; its small inertia allows no more at 1 ms
 DAMPING_RATIO = 0.7
 CREEP_SPEED = 0.01  # m/s, below which friction fades to 0, so that a resting aircraft is not shaken
 
@@ -105,15 +106,17 @@ class Rail:
             (0.0, settings.elevation_deg * pi / 180.0, settings.heading_deg * pi / 180.0)
         )
         self.plateau = mass * STANDARD_GRAVITY * settings.peak_specific_force_g * force_factor  # N
-        self._acceleration = self.plateau / mass  # m/s^2, for the run-out's length
+        backward = -gravity * self.along[2]  # m/s^2, g sin(theta)
+        self._run_out = (self.plateau / mass / 3.0 - backward / 2.0) * settings.fall**2  # m, at no speed
         self._rest = (front, rear)
         angular = 2.0 * pi * CONTACT_FREQUENCY
         self._stiffness, self._damping = mass * angular**2, 2.0 * DAMPING_RATIO * mass * angular
-        self._roll_stiffness = roll_inertia * angular**2
-        self._roll_damping = 2.0 * DAMPING_RATIO * roll_inertia * angular
+        rolling = 2.0 * pi * ROLL_FREQUENCY
+        self._roll_stiffness = roll_inertia * rolling**2
+        self._roll_damping = 2.0 * DAMPING_RATIO * roll_inertia * rolling
         weight_normal = mass * gravity * self.down[2]
         base = front[0] - rear[0]
-        self._axial_rest = -mass * gravity * self.along[2]
+        self._axial_rest = mass * backward
         # Moment balance about the centre of gravity; the axial force acts at its height.
         self._front_rest = -weight_normal * (-rear[0]) / base
         self._rear_rest = -weight_normal * front[0] / base
@@ -130,8 +133,7 @@ class Rail:
         if since <= 0.0:
             return 0.0
         if self._fall_start is None:
-            run_out = speed * s.fall + self._acceleration * s.fall**2 / 3.0
-            if since > s.rise and self.travel + run_out >= s.stroke:
+            if since > s.rise and self.travel + speed * s.fall + self._run_out >= s.stroke:
                 self._fall_start = time
             return self.plateau * min(since / s.rise, 1.0)
         return self.plateau * max(1.0 - (time - self._fall_start) / s.fall, 0.0)
