@@ -250,6 +250,17 @@ def test_validity_begins_at_twice_v_star():
     assert below[1:4] == (0.0, 1.0, 0.0)  # clipped, and no worse known than the wind
 
 
+def test_wind_bounds_the_deviation_below_v_star_only():
+    """Above V* the pressures speak, and their deviation V*²/(2·V) may exceed the wind's."""
+    sd, wind = 30.0, 2.0
+    star = math.sqrt(2.0 * math.sqrt(2.0) * sd / DENSITY)
+    settings_ = EstimatorSettings(model="bernoulli", wind_sd=wind)
+    for ratio, expected in ((0.99, wind), (1.01, star / 2.02)):
+        total = STATIC + 0.5 * DENSITY * (ratio * star) ** 2
+        row = PaperFilter(settings_, NoiseModel(sd, sd, 0.0)).step(0.0, total, STATIC, KELVIN, 0.0, 0.0)
+        assert row[2] == pytest.approx(expected, rel=2e-3)  # p_t/p_s is 1.0005
+
+
 def test_sensors_without_noise():
     estimator = PaperFilter(EstimatorSettings(), NoiseModel(0.0, 0.0, 0.0))
     assert estimator.step(0.0, STATIC, STATIC, KELVIN, 0.0, 0.0)[1:3] == (0.0, 0.0)

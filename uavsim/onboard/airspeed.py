@@ -327,7 +327,7 @@ class PaperFilter:
 class FilterpyFilter(PaperFilter):
     """The same estimator with the Kalman filter of the filterpy package, two states and one reading at a time.
 
-    It is some twenty times slower; its use is to show that `RandomWalk` is the textbook's filter.
+    It is tens of times slower; its use is to show that `RandomWalk` is the textbook's filter.
     """
 
     __slots__ = ()

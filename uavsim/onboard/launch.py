@@ -181,7 +181,7 @@ class MultiLevelWindow:
             busy += counter.total
             if counter.total > furthest.total:
                 furthest = counter
-        self._idle = busy == 0 and not self._recognised
+        self._idle = busy == 0
         self._show(furthest)
         return self._recognised
 
