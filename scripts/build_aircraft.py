@@ -3,10 +3,10 @@
 Aerodynamics: AeroSandbox's AeroBuildup (strips with NeuralFoil sections, slender fuselage) over wing position w and
 angle of attack α, for wing, fuselage and fin together and for the tail alone in the wing's downwash
 
-    ε(α, w) = L_wing / (ρ V² b') · 1/(4π) · ∫ g(y) dy over the tail's span,
+    ε(α, w) = Γ/V · mean of g(y)/4π over the tail's span,   Γ/V = L_wing / (ρ V² b'),   b' = (π/4) b(w),
 
-the field of one horseshoe vortex of span b' = (π/4) b(w) whose circulation carries the wing's lift
-(Katz & Plotkin, Low-Speed Aerodynamics, §5.3). The derivatives are central differences of the same model.
+where g/4π is the downwash of a horseshoe vortex of unit circulation (Biot-Savart; the span b' of an elliptic wing's
+rolled-up wake, e.g. Katz & Plotkin, Low-Speed Aerodynamics, 2nd ed., §4.9). Derivatives are central differences.
 
 Mass: boxes and points that stay, and for each wing panel two point masses on its axis which have the panel's mass,
 centre of mass and radius of gyration; JSBSim moves them along the arcs about the pivot (systems/wing.xml).
@@ -64,9 +64,9 @@ ALPHAS = (
     20,
 )
 ALPHAS += (25, 30, 40, 60, 90)
-BETA_STEP = 4.0  # deg, half width of the differences over sideslip
+BETA_STEP = 6.0  # deg, half width of the differences over sideslip
 RATE_STEP = 0.02  # of p b/2V, q c/2V and r b/2V
-TAIL_STEP = 4.0  # deg of tail deflection
+TAIL_STEP = 8.0  # deg of tail deflection: a secant to where the tail begins to stall
 
 KG_TO_LB = 1.0 / 0.45359237  # exact, international pound
 PA_TO_PSF = 1.0 / 47.880259  # lbf/ft²
@@ -225,85 +225,96 @@ def fuselage_shape(geometry: Geometry) -> asb.Fuselage:
 # -- aerodynamics --------------------------------------------------------------------------------------------------
 
 
-def downwash(geometry: Geometry, w: float, circulation: np.ndarray, airspeed: float) -> np.ndarray:
-    """Mean downwash angle (rad) over the tail's span of a horseshoe vortex of the given circulation (m²/s)."""
-    half = math.pi / 8 * wing_shape(geometry, w).span()
-    tail = geometry["tail"]
-    bound_x = wing_shape(geometry, w).aerodynamic_center()[0]
-    x = tail["quarter_chord_x"] - bound_x
+def downwash(geometry: Geometry, wing: asb.Wing, lift_over_dynamic_pressure: np.ndarray) -> np.ndarray:
+    """Mean downwash angle (deg) over the tail's span, of the horseshoe vortex that carries L/q (m²) of the wing."""
+    tail, half = geometry["tail"], math.pi / 8 * wing.span()
+    x = tail["quarter_chord_x"] - wing.aerodynamic_center()[0]
     y = np.linspace(tail["root_y"], tail["tip_y"], 21)
-    field = np.zeros_like(y)
-    for arm in (half - y, half + y):  # distance inwards of the two trailing vortices
-        reach = np.hypot(arm, x)
-        trailing = arm / (arm**2 + VORTEX_CORE**2) * (1 + x / reach)
-        bound = arm / (x * reach)
+    field = np.zeros_like(y)  # of unit circulation, times 4 π
+    for arm in (half - y, half + y):  # from the two trailing vortices inwards
+        trailing = arm / (arm**2 + VORTEX_CORE**2) * (1 + x / np.hypot(arm, x))
+        bound = arm / (x * np.hypot(arm, x))
         field += trailing + bound
-    return circulation * field.mean() / (4 * math.pi) / airspeed
+    circulation_over_speed = lift_over_dynamic_pressure / (4 * half)  # Γ/V = L / (ρ V² b'), b' = 2 half
+    return np.degrees(circulation_over_speed * field.mean() / (4 * math.pi))
 
 
 class Model:
-    """Coefficients of the whole aircraft from AeroSandbox, about the reference point."""
+    """Coefficients of the whole aircraft from AeroSandbox at one wing position, about the reference point."""
 
-    def __init__(self, geometry: Geometry) -> None:
+    def __init__(self, geometry: Geometry, w: float) -> None:
         self.geometry = geometry
         ref = geometry["reference"]
         self.airspeed, self.chord, self.span = ref["airspeed"], ref["chord"], ref["span"]
         self.atmosphere = asb.Atmosphere(ref["altitude"])
-        self.fuselage = fuselage_shape(geometry)
-        self.fin = fin_shape(geometry)
+        self.wing = wing_shape(geometry, w)
+        self.front = airplane(geometry, [self.wing, fin_shape(geometry)], [fuselage_shape(geometry)])
+
+    def point(self, alpha: np.ndarray, beta: float = 0.0, rates: Vector = (0.0, 0.0, 0.0)) -> asb.OperatingPoint:
+        """Angles in degrees, rates as p b/2V, q c/2V, r b/2V."""
+        ones = np.ones_like(alpha)
+        lengths = (self.span, self.chord, self.span)
+        turning = [2 * self.airspeed / length * rate * ones for length, rate in zip(lengths, rates, strict=True)]
+        return asb.OperatingPoint(self.atmosphere, self.airspeed, alpha, beta * ones, *turning)
+
+    def ahead_of_tail(self, here: asb.OperatingPoint) -> tuple[Any, np.ndarray]:
+        """Wing, fuselage and fin, and the wing's downwash at the tail (deg)."""
+        result = asb.AeroBuildup(self.front, here).run()
+        lift = result["wing_aero_components"][0].L
+        return result, downwash(self.geometry, self.wing, lift / here.dynamic_pressure())
 
     def coefficients(
         self,
-        w: float,
         alpha: np.ndarray,
         beta: float = 0.0,
         rates: Vector = (0.0, 0.0, 0.0),
         tail: tuple[float, float] = (0.0, 0.0),
     ) -> np.ndarray:
-        """CL, CD, CY (wind axes), Cl, Cm, Cn (body axes), 6 × len(alpha).
-
-        Alpha, beta and tail deflections (symmetric, differential) in degrees; rates as p b/2V, q c/2V, r b/2V.
-        """
-        geometry, speed = self.geometry, self.airspeed
-        p, q, r = 2 * speed / self.span * rates[0], 2 * speed / self.chord * rates[1], 2 * speed / self.span * rates[2]
-
-        def point(a: np.ndarray) -> asb.OperatingPoint:
-            ones = np.ones_like(a)
-            return asb.OperatingPoint(self.atmosphere, speed, a, beta * ones, p * ones, q * ones, r * ones)
-
-        here = point(alpha)
-        front = asb.AeroBuildup(airplane(geometry, [wing_shape(geometry, w), self.fin], [self.fuselage]), here).run()
-        lift = front["wing_aero_components"][0].L
-        wing_span = math.pi / 4 * wing_shape(geometry, w).span()
-        epsilon = np.degrees(downwash(geometry, w, lift / (self.atmosphere.density() * speed * wing_span), speed))
-        behind = asb.AeroBuildup(airplane(geometry, [tail_shape(geometry, *tail)], []), point(alpha - epsilon)).run()
-        eta = geometry["tail"]["efficiency"]
+        """CL, CD, CY (wind axes), Cl, Cm, Cn (body axes), 6 × len(alpha); tail: symmetric, differential (deg)."""
+        here = self.point(alpha, beta, rates)
+        front, epsilon = self.ahead_of_tail(here)
+        shape = airplane(self.geometry, [tail_shape(self.geometry, *tail)], [])
+        behind = asb.AeroBuildup(shape, self.point(alpha - epsilon, beta, rates)).run()
+        eta = self.geometry["tail"]["efficiency"]
         force = [a + eta * b for a, b in zip(front["F_g"], behind["F_g"], strict=True)]
         moment = [a + eta * b for a, b in zip(front["M_g"], behind["M_g"], strict=True)]
         x, y, z = here.convert_axes(*force, from_axes="geometry", to_axes="wind")
         roll, pitch, yaw = here.convert_axes(*moment, from_axes="geometry", to_axes="body")
-        area = geometry["reference"]["area"]
-        pressure = here.dynamic_pressure() * area
-        extra = geometry["fuselage"]["drag_area_extra"] / area
-        return np.array([
-            -z / pressure, -x / pressure + extra, y / pressure,
-            roll / pressure / self.span, pitch / pressure / self.chord, yaw / pressure / self.span,
-        ])  # fmt: skip
+        area = self.geometry["reference"]["area"]
+        drag = -x + here.dynamic_pressure() * self.geometry["fuselage"]["drag_area_extra"]
+        return np.array([-z, drag, y, roll / self.span, pitch / self.chord, yaw / self.span]) / (
+            here.dynamic_pressure() * area
+        )
 
-    def difference(self, w: float, alpha: np.ndarray, **half_step: Any) -> np.ndarray:
+    def odd(self, alpha: np.ndarray, **step: Any) -> np.ndarray:
         """Half of f(+step) - f(-step), 6 × len(alpha)."""
-        plus = self.coefficients(w, alpha, **half_step)
-        minus = self.coefficients(w, alpha, **{k: _negated(v) for k, v in half_step.items()})
-        return (plus - minus) / 2
+        return (self.coefficients(alpha, **step) - self.coefficients(alpha, **_negated(step))) / 2
+
+    def even(self, alpha: np.ndarray, **step: Any) -> np.ndarray:
+        """Half of f(+step) + f(-step) less f(0), 6 × len(alpha)."""
+        both = self.coefficients(alpha, **step) + self.coefficients(alpha, **_negated(step))
+        return both / 2 - self.coefficients(alpha)
+
+    def downwash_slope(self, alpha: np.ndarray) -> np.ndarray:
+        """Change of the downwash with angle of attack, dε/dα."""
+        steps = [self.ahead_of_tail(self.point(alpha + step))[1] for step in (1.0, -1.0)]
+        return (steps[0] - steps[1]) / 2
 
 
-def _negated(value: float | tuple[float, ...]) -> float | tuple[float, ...]:
-    return tuple(-v for v in value) if isinstance(value, tuple) else -value
+def _negated(step: dict[str, Any]) -> dict[str, Any]:
+    return {key: tuple(-v for v in value) if isinstance(value, tuple) else -value for key, value in step.items()}
 
 
 def tables(geometry: Geometry) -> dict[str, np.ndarray]:
-    """All coefficients and derivatives (per rad), each len(ALPHAS) × len(WING_POSITIONS)."""
-    model, alpha = Model(geometry), np.array(ALPHAS, dtype=float)
+    """All coefficients and derivatives (per rad), len(ALPHAS) × len(WING_POSITIONS).
+
+    The drag's curvatures over sideslip and tail deflection (CDbb, CDee, CDaa, per rad², and CDbbbb to reach the drag
+    of the side at 90°) and the derivatives over α' c/2V (CLad, Cmad: the tail meets the downwash that left the wing
+    l/V ago) hold at the linear angle of attack: 1 × len(WING_POSITIONS).
+    """
+    alpha = np.array(ALPHAS, dtype=float)
+    linear = np.array([geometry["reference"]["linear_alpha_deg"]])
+    beta, deflection = math.radians(BETA_STEP), math.radians(TAIL_STEP)
     columns: dict[str, list[np.ndarray]] = {}
 
     def keep(names: str, values: np.ndarray) -> None:
@@ -311,22 +322,26 @@ def tables(geometry: Geometry) -> dict[str, np.ndarray]:
             columns.setdefault(name, []).append(row)
 
     for w in WING_POSITIONS:
-        keep("CL CD CY0 Cl0 Cm Cn0", model.coefficients(w, alpha))
-        sideslip = model.difference(w, alpha, beta=BETA_STEP) / math.radians(BETA_STEP)
-        keep("CYb Clb Cnb", sideslip[[2, 3, 5]])
-        roll = model.difference(w, alpha, rates=(RATE_STEP, 0.0, 0.0)) / RATE_STEP
-        keep("CYp Clp Cnp", roll[[2, 3, 5]])
-        pitch = model.difference(w, alpha, rates=(0.0, RATE_STEP, 0.0)) / RATE_STEP
-        keep("CLq Cmq", pitch[[0, 4]])
-        yaw = model.difference(w, alpha, rates=(0.0, 0.0, RATE_STEP)) / RATE_STEP
-        keep("CYr Clr Cnr", yaw[[2, 3, 5]])
-        elevator = model.difference(w, alpha, tail=(TAIL_STEP, 0.0)) / math.radians(TAIL_STEP)
-        keep("CLde CDde Cmde", elevator[[0, 1, 4]])
-        aileron = model.difference(w, alpha, tail=(0.0, TAIL_STEP)) / math.radians(TAIL_STEP)
-        keep("CYda Clda Cnda", aileron[[2, 3, 5]])
+        model = Model(geometry, w)
+        keep("CL CD CY0 Cl0 Cm Cn0", model.coefficients(alpha))
+        keep("CYb Clb Cnb", model.odd(alpha, beta=BETA_STEP)[[2, 3, 5]] / beta)
+        keep("CYp Clp Cnp", model.odd(alpha, rates=(RATE_STEP, 0.0, 0.0))[[2, 3, 5]] / RATE_STEP)
+        keep("CLq Cmq", model.odd(alpha, rates=(0.0, RATE_STEP, 0.0))[[0, 4]] / RATE_STEP)
+        keep("CYr Clr Cnr", model.odd(alpha, rates=(0.0, 0.0, RATE_STEP))[[2, 3, 5]] / RATE_STEP)
+        keep("CLde CDde Cmde", model.odd(alpha, tail=(TAIL_STEP, 0.0))[[0, 1, 4]] / deflection)
+        keep("CYda Clda Cnda", model.odd(alpha, tail=(0.0, TAIL_STEP))[[2, 3, 5]] / deflection)
+
+        curvature = model.even(linear, beta=BETA_STEP)[1] / beta**2
+        keep("CDbb CDbbbb", np.array([curvature, model.coefficients(linear, beta=89.9)[1] - curvature]))
+        keep("CDee", model.even(linear, tail=(TAIL_STEP, 0.0))[[1]] / deflection**2)
+        keep("CDaa", model.even(linear, tail=(0.0, TAIL_STEP))[[1]] / deflection**2)
+        arm = geometry["tail"]["quarter_chord_x"] - model.wing.aerodynamic_center()[0]
+        lag = 2 * arm / model.chord * model.downwash_slope(linear)
+        keep("CLad Cmad", lag * model.odd(linear, tail=(TAIL_STEP, 0.0))[[0, 4]] / deflection)
     result = {name: np.array(rows).T for name, rows in columns.items()}
-    for zero in ("CY0", "Cl0", "Cn0"):  # the shape is symmetric: without sideslip there is nothing
-        assert np.abs(result.pop(zero)).max() < 1e-6, zero
+    for zero in ("CY0", "Cl0", "Cn0"):
+        if np.abs(result.pop(zero)).max() > 1e-6:
+            raise ValueError(f"a symmetric shape has {zero} without sideslip")
     return result
 
 
@@ -334,56 +349,74 @@ def tables(geometry: Geometry) -> dict[str, np.ndarray]:
 
 
 def table_xml(name: str, values: np.ndarray) -> str:
-    """Write a table over angle of attack (rows) and wing position (columns)."""
-    head = " " * 16 + "".join(f"{w:>11.3f}" for w in WING_POSITIONS)
-    rows = [f"            {a:>4d}" + "".join(f"{v:>11.5f}" for v in row) for a, row in zip(ALPHAS, values, strict=True)]
-    return f"""<table name="aero/{name}">
-          <independentVar lookup="row">aero/alpha-deg</independentVar>
-          <independentVar lookup="column">fcs/wing-pos-norm</independentVar>
-          <tableData>
-{head}
-{chr(10).join(rows)}
-          </tableData>
-        </table>"""
+    """Write a table over angle of attack (rows) and wing position (columns), or over wing position alone."""
+    if len(values) == 1:
+        rows = [f"          {w:>11.3f}{v:>11.5f}" for w, v in zip(WING_POSITIONS, values[0], strict=True)]
+        variables = '<independentVar lookup="row">fcs/wing-pos-norm</independentVar>'
+    else:
+        rows = [" " * 14 + "".join(f"{w:>11.3f}" for w in WING_POSITIONS)]
+        rows += [f"{a:>14d}" + "".join(f"{v:>11.5f}" for v in row) for a, row in zip(ALPHAS, values, strict=True)]
+        variables = (
+            '<independentVar lookup="row">aero/alpha-deg</independentVar>'
+            '<independentVar lookup="column">fcs/wing-pos-norm</independentVar>'
+        )
+    lines = "\n".join(rows)
+    return f'<table name="aero/{name}">{variables}\n          <tableData>\n{lines}\n          </tableData></table>\n'
 
 
-def _times(name: str, values: np.ndarray, *properties: str) -> str:
-    factors = "".join(f"<property>{p}</property>" for p in properties)
-    return f"        <product>{factors}\n        {table_xml(name, values)}</product>\n"
+def _function_xml(name: str, factors: tuple[str, ...], t: dict[str, np.ndarray], terms: list[tuple[str, ...]]) -> str:
+    """Write the product of the factors and the sum of table × property × … for each term."""
+    lines = []
+    for table, *properties in terms:
+        own = "".join(f"<property>{p}</property>" for p in properties)
+        term = f"{own}{table_xml(table, t[table])}"
+        lines.append(f"          <product>{term}          </product>\n" if properties else f"          {term}")
+    common = "".join(f"<property>{p}</property>" for p in factors)
+    return (
+        f'      <function name="aero/{name}">\n        <product>{common}<sum>\n{"".join(lines)}'
+        "        </sum></product>\n      </function>\n"
+    )
 
 
 def aerodynamics_xml(t: dict[str, np.ndarray]) -> str:
-    """Write the six axes: forces in wind axes, moments in body axes about the reference point."""
+    """Write the six axes: forces in wind axes, moments in body axes about the reference point.
+
+    The tables hold for sideslip as small as flight has it. So that the rail in a side wind, where the angle of attack
+    means nothing, is no worse than approximate, they act with q̄ S cos β and the slip is sin β; what is left at 90° is
+    the drag of the side, CDbb sin² β + CDbbbb sin⁴ β.
+    """
     p, q, r = (f"velocities/{axis}-aero-rad_sec" for axis in "pqr")
-    by_span, by_chord = "aero/bi2vel", "aero/ci2vel"
-    beta, elevator, aileron = "aero/beta-rad", "fcs/tail-symmetric-rad", "fcs/tail-differential-rad"
+    by_span, by_chord, alpha_rate = "aero/bi2vel", "aero/ci2vel", "aero/alphadot-rad_sec"
+    slip, elevator, aileron = "aero/slip", "fcs/tail-symmetric-rad", "fcs/tail-differential-rad"
+    along, span, chord = "aero/qbar-area-along", "metrics/bw-ft", "metrics/cbarw-ft"
 
-    def lateral(axis: str) -> str:
-        return (
-            _times(f"C{axis}b", t[f"C{axis}b"], beta)
-            + _times(f"C{axis}p", t[f"C{axis}p"], by_span, p)
-            + _times(f"C{axis}r", t[f"C{axis}r"], by_span, r)
-            + _times(f"C{axis}da", t[f"C{axis}da"], aileron)
-        )
+    def lateral(c: str) -> list[tuple[str, ...]]:
+        return [(f"{c}b", slip), (f"{c}p", by_span, p), (f"{c}r", by_span, r), (f"{c}da", aileron)]
 
-    terms = {
-        ("LIFT", "lift", ""): table_xml("CL", t["CL"]) + _times("CLq", t["CLq"], by_chord, q) + _times("CLde", t["CLde"], elevator),
-        ("DRAG", "drag", ""): table_xml("CD", t["CD"]) + _times("CDde", t["CDde"], elevator),
-        ("SIDE", "side", ""): lateral("Y"),
-        ("ROLL", "roll", "metrics/bw-ft"): lateral("l"),
-        ("PITCH", "pitch", "metrics/cbarw-ft"): table_xml("Cm", t["Cm"]) + _times("Cmq", t["Cmq"], by_chord, q) + _times("Cmde", t["Cmde"], elevator),
-        ("YAW", "yaw", "metrics/bw-ft"): lateral("n"),
-    }  # fmt: skip
-    axes = [
-        f"""    <axis name="{axis}">
-      <function name="aero/{name}">
-        <product><property>aero/qbar-area</property>{f"<property>{arm}</property>" if arm else ""}<sum>
-        {body}</sum></product>
-      </function>
-    </axis>"""
-        for (axis, name, arm), body in terms.items()
-    ]
-    return "  <aerodynamics>\n" + "\n".join(axes) + "\n  </aerodynamics>\n"
+    def longitudinal(c: str) -> list[tuple[str, ...]]:
+        return [(c,), (f"{c}q", by_chord, q), (f"{c}ad", by_chord, alpha_rate), (f"{c}de", elevator)]
+
+    drag: list[tuple[str, ...]] = [("CD",), ("CDde", elevator), ("CDee", elevator, elevator)]
+    drag.append(("CDaa", aileron, aileron))
+    side_drag: list[tuple[str, ...]] = [("CDbb", slip, slip), ("CDbbbb", slip, slip, slip, slip)]
+    axes = {
+        "LIFT": _function_xml("lift", (along,), t, longitudinal("CL")),
+        "DRAG": _function_xml("drag", (along,), t, drag)
+        + _function_xml("side-drag", ("aero/qbar-area",), t, side_drag),
+        "SIDE": _function_xml("side", (along,), t, lateral("CY")),
+        "ROLL": _function_xml("roll", (along, span), t, lateral("Cl")),
+        "PITCH": _function_xml("pitch", (along, chord), t, longitudinal("Cm")),
+        "YAW": _function_xml("yaw", (along, span), t, lateral("Cn")),
+    }
+    # functions before the axes see JSBSim's own q̄ S of the step before (at first: not yet written); q̄ is fresh
+    beta = "<property>aero/beta-rad</property>"
+    pressure = "<property>aero/qbar-psf</property><property>metrics/Sw-sqft</property>"
+    return (
+        f'  <aerodynamics>\n    <function name="{slip}"><sin>{beta}</sin></function>\n'
+        f'    <function name="{along}"><product>{pressure}<cos>{beta}</cos></product></function>\n'
+        + "".join(f'    <axis name="{axis}">\n{functions}    </axis>\n' for axis, functions in axes.items())
+        + "  </aerodynamics>\n"
+    )
 
 
 def _xyz(position: list[float] | Vector) -> str:
@@ -415,8 +448,8 @@ def mass_xml(geometry: Geometry) -> str:
     lines = [
         f'    <{n} unit="KG*M2">{v:.8f}</{n}>' for n, v in (("ixx", body.ixx), ("iyy", body.iyy), ("izz", body.izz))
     ]
-    # JSBSim's body x and z are minus the structural ones: the product keeps its sign
-    lines.append(f'    <ixz unit="KG*M2">{body.ixz:.8f}</ixz>')
+    # x and z both change sign from structural to body axes, so Σ m x z stays; "negated" wants it as in the tensor
+    lines.append(f'    <ixz unit="KG*M2">{-body.ixz:.8f}</ixz>')
     lines.append(f'    <emptywt unit="KG">{body.mass:.6f}</emptywt>')
     lines.append(location_xml("CG", body.centre).rstrip())
     for side, sign in (("right", 1), ("left", -1)):
@@ -432,16 +465,20 @@ def mass_xml(geometry: Geometry) -> str:
 def propulsion_xml(geometry: Geometry) -> str:
     """Write motor and propeller at their place; no tanks."""
     place_of = f'<location unit="M">{_xyz(geometry["motor"]["position"])}</location>'
-    name = geometry["name"]
+    name, sense = geometry["name"], geometry["propeller"]["sense"]
     return (
-        f'  <propulsion>\n    <engine file="{name}_motor">{place_of}\n'
-        f'      <thruster file="{name}_propeller">{place_of}<sense>{geometry["propeller"]["sense"]}</sense></thruster>\n'
+        f'  <propulsion>\n    <engine file="{name}_motor">\n'
+        f'      <thruster file="{name}_propeller">{place_of}<sense>{sense}</sense></thruster>\n'
         "    </engine>\n  </propulsion>\n"
     )
 
 
 def reactions_xml(geometry: Geometry) -> str:
-    """Write the launcher's forces (positive: push forwards, shoes lift the aircraft or push it right) and the wing's moment."""
+    """Write what the launcher and the opening wing do to the aircraft.
+
+    Positive: push forwards, shoes lift the aircraft or push it right, the rail's moment rolls it right. The wing's
+    moment has magnitude 1 and the components l, m, n, which systems/wing.xml sets.
+    """
     rail = geometry["rail"]
     forces = [("push", "push", (1, 0, 0))]
     for shoe in ("front", "rear"):
@@ -454,10 +491,11 @@ def reactions_xml(geometry: Geometry) -> str:
         f"<direction>{_xyz(direction)}</direction></force>"
         for name, at, direction in forces
     ]
-    lines.append(
+    lines += [
+        f'    <moment name="rail-roll" frame="BODY"><direction>{_xyz((1, 0, 0))}</direction></moment>',
         '    <moment name="wing-inertia" frame="BODY"><function><value>1</value></function>'
-        f"<direction>{_xyz((0, 0, 0))}</direction></moment>"
-    )
+        f"<direction>{_xyz((0, 0, 0))}</direction></moment>",
+    ]
     return "  <external_reactions>\n" + "\n".join(lines) + "\n  </external_reactions>\n"
 
 
@@ -485,6 +523,7 @@ def constants_xml(geometry: Geometry) -> str:
         "ap/gain/pitch-rate-sec": gains["pitch_rate"],
         "ap/gain/roll-folded": gains["roll_folded"],
         "ap/gain/roll-gain-on-opening": gains["roll_out"] - gains["roll_folded"],
+        "ap/gain/roll-integral-per_sec": gains["roll_integral"],
         "ap/gain/roll-rate-sec": gains["roll_rate"],
     }
     return "".join(f'    <property value="{v:.9g}">{n}</property>\n' for n, v in values.items())
@@ -518,8 +557,10 @@ def motor_xml(geometry: Geometry) -> str:
     motor = geometry["motor"]
     return (
         f'<brushless_dc_motor name="{geometry["name"]} motor">\n'
-        f"  <maxvolts>{motor['max_voltage']}</maxvolts>\n  <velocityconstant>{motor['velocity_constant']}</velocityconstant>\n"
-        f"  <coilresistance>{motor['coil_resistance']}</coilresistance>\n  <noloadcurrent>{motor['no_load_current']}</noloadcurrent>\n"
+        f"  <maxvolts>{motor['max_voltage']}</maxvolts>\n"
+        f"  <velocityconstant>{motor['velocity_constant']}</velocityconstant>\n"
+        f"  <coilresistance>{motor['coil_resistance']}</coilresistance>\n"
+        f"  <noloadcurrent>{motor['no_load_current']}</noloadcurrent>\n"
         "</brushless_dc_motor>\n"
     )
 
@@ -547,7 +588,8 @@ def aircraft_xml(geometry: Geometry, header: str) -> str:
     coefficients = tables(geometry)
     return (
         f'<?xml version="1.0"?>\n{header}<fdm_config name="{geometry["name"]}" version="2.0" release="BETA">\n'
-        "  <fileheader>\n    <author>uavsim</author>\n    <description>Electric folding-wing aircraft</description>\n  </fileheader>\n"
+        "  <fileheader>\n    <author>uavsim</author>\n"
+        "    <description>Electric folding-wing aircraft</description>\n  </fileheader>\n"
         + metrics_xml(geometry)
         + mass_xml(geometry)
         + "  <ground_reactions></ground_reactions>\n"
@@ -570,9 +612,10 @@ def build(directory: Path) -> list[Path]:
     """Write the aircraft's generated files and return their paths."""
     source = directory / "geometry.toml"
     geometry = read_geometry(source)
+    digest = hashlib.sha256(source.read_bytes()).hexdigest()
     header = (
         "<!-- Generated by scripts/build_aircraft.py from geometry.toml: do not edit.\n"
-        f"     aerosandbox {asb.__version__}\n     geometry.toml sha256 {hashlib.sha256(source.read_bytes()).hexdigest()} -->\n"
+        f"     aerosandbox {asb.__version__}\n     geometry.toml sha256 {digest} -->\n"
     )
     name = geometry["name"]
     contents = {
