@@ -25,45 +25,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import aerosandbox as asb
+import aerosandbox as asb  # type: ignore[import-untyped]
 import numpy as np
 
 Geometry = dict[str, Any]
 Vector = tuple[float, float, float]
 
 WING_POSITIONS = (0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0)
-# deg; JSBSim holds the last row beyond ±90, where the moment still turns the nose back into the wind
-ALPHAS = (
-    -90,
-    -60,
-    -40,
-    -30,
-    -25,
-    -20,
-    -16,
-    -14,
-    -12,
-    -10,
-    -8,
-    -6,
-    -4,
-    -2,
-    0,
-    2,
-    4,
-    6,
-    8,
-    10,
-    11,
-    12,
-    13,
-    14,
-    15,
-    16,
-    18,
-    20,
-)
-ALPHAS += (25, 30, 40, 60, 90)
+ALPHAS: tuple[int, ...] = (
+    *(-90, -60, -40, -30, -25, -20, -16, -14, -12, -10, -8, -6, -4, -2, 0, 2, 4, 6, 8, 10),
+    *(11, 12, 13, 14, 15, 16, 18, 20, 25, 30, 40, 60, 90),
+)  # deg; JSBSim holds the last row beyond ±90, where the moment still turns the nose back into the wind
 BETA_STEP = 6.0  # deg, half width of the differences over sideslip
 RATE_STEP = 0.02  # of p b/2V, q c/2V and r b/2V
 TAIL_STEP = 8.0  # deg of tail deflection: a secant to where the tail begins to stall
@@ -236,7 +208,7 @@ def downwash(geometry: Geometry, wing: asb.Wing, lift_over_dynamic_pressure: np.
         bound = arm / (x * np.hypot(arm, x))
         field += trailing + bound
     circulation_over_speed = lift_over_dynamic_pressure / (4 * half)  # Γ/V = L / (ρ V² b'), b' = 2 half
-    return np.degrees(circulation_over_speed * field.mean() / (4 * math.pi))
+    return np.asarray(np.degrees(circulation_over_speed * field.mean() / (4 * math.pi)))
 
 
 class Model:
@@ -282,23 +254,22 @@ class Model:
         roll, pitch, yaw = here.convert_axes(*moment, from_axes="geometry", to_axes="body")
         area = self.geometry["reference"]["area"]
         drag = -x + here.dynamic_pressure() * self.geometry["fuselage"]["drag_area_extra"]
-        return np.array([-z, drag, y, roll / self.span, pitch / self.chord, yaw / self.span]) / (
-            here.dynamic_pressure() * area
-        )
+        forces = np.array([-z, drag, y, roll / self.span, pitch / self.chord, yaw / self.span])
+        return np.asarray(forces / (here.dynamic_pressure() * area))
 
     def odd(self, alpha: np.ndarray, **step: Any) -> np.ndarray:
         """Half of f(+step) - f(-step), 6 × len(alpha)."""
-        return (self.coefficients(alpha, **step) - self.coefficients(alpha, **_negated(step))) / 2
+        return np.asarray(self.coefficients(alpha, **step) - self.coefficients(alpha, **_negated(step))) / 2
 
     def even(self, alpha: np.ndarray, **step: Any) -> np.ndarray:
         """Half of f(+step) + f(-step) less f(0), 6 × len(alpha)."""
         both = self.coefficients(alpha, **step) + self.coefficients(alpha, **_negated(step))
-        return both / 2 - self.coefficients(alpha)
+        return np.asarray(both / 2 - self.coefficients(alpha))
 
     def downwash_slope(self, alpha: np.ndarray) -> np.ndarray:
         """Change of the downwash with angle of attack, dε/dα."""
         steps = [self.ahead_of_tail(self.point(alpha + step))[1] for step in (1.0, -1.0)]
-        return (steps[0] - steps[1]) / 2
+        return np.asarray(steps[0] - steps[1]) / 2
 
 
 def _negated(step: dict[str, Any]) -> dict[str, Any]:

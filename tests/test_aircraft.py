@@ -103,11 +103,11 @@ def expected_mass(w: float) -> tuple[float, float, np.ndarray]:
 
 def _box(mass: float, size: list[float]) -> np.ndarray:
     squares = np.square(size)
-    return mass / 12 * np.diag(squares.sum() - squares)
+    return np.asarray(mass / 12 * np.diag(squares.sum() - squares))
 
 
 def _parallel(r: np.ndarray) -> np.ndarray:
-    return np.eye(3) * (r @ r) - np.outer(r, r)
+    return np.asarray(np.eye(3) * (r @ r) - np.outer(r, r))
 
 
 def run_until(fdm: jsbsim.FGFDMExec, done: Callable[[], bool], limit: int = 1000) -> None:
@@ -149,7 +149,7 @@ def angular_momentum(fdm: jsbsim.FGFDMExec) -> np.ndarray:
     pitch = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
     yaw = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
     rates = np.array([fdm[f"velocities/{axis}i-rad_sec"] for axis in "pqr"])
-    return yaw @ pitch @ roll @ inertia(fdm) @ rates
+    return np.asarray(yaw @ pitch @ roll @ inertia(fdm) @ rates)
 
 
 @pytest.mark.parametrize("second_order", [True, False])
@@ -277,6 +277,18 @@ def test_tail_trims_every_wing_position(column: int) -> None:
     assert np.abs(needed).max() < GEOMETRY["tail"]["deflection_max_deg"]
 
 
+def test_lift_slope_with_the_wing_out_is_that_of_its_aspect_ratio() -> None:
+    """Authority: Helmbold, 2 π A / (2 + √(A² + 4)) for the wing; the tail adds at most its share of the area."""
+    ref, tail = GEOMETRY["reference"], GEOMETRY["tail"]
+    aspect = ref["span"] ** 2 / ref["area"]
+    wing = 2 * math.pi * aspect / (2 + math.hypot(aspect, 2))
+    share = (tail["tip_y"] - tail["root_y"]) * (tail["root_chord"] + tail["tip_chord"]) / ref["area"]
+    alpha, _, lift = table("CL")
+    linear = (alpha >= -2) & (alpha <= 6)
+    slope = np.polyfit(np.radians(alpha[linear]), lift[linear, -1], 1)[0]
+    assert 0.95 * wing < slope < 1.05 * wing * (1 + share)
+
+
 def test_stall_speed_with_the_wing_out() -> None:
     """Trimmed, at sea level and standard density 1.225 kg/m³: between 15 and 20 m/s."""
     lift, moment = about_cg("CL", "Cm", -1)
@@ -295,7 +307,7 @@ class Pilot:
     """A throttle PI on true airspeed over a stepped model, with the nodes looked up once."""
 
     def __init__(self, fdm: jsbsim.FGFDMExec, integral: float = 0.5) -> None:
-        node = fdm.get_property_manager().get_node
+        node: Any = fdm.get_property_manager().get_node
         self.run, self.integral = fdm.run, integral
         self.speed = node("velocities/vtrue-fps").get_double_value
         self.altitude = node("position/h-sl-ft").get_double_value
