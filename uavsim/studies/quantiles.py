@@ -57,3 +57,55 @@ def quantile_band(sample: NDArray[np.float64], probability: float, confidence: f
         float(ordered[low - 1]) if low >= 1 else None,
         float(ordered[high - 1]) if high <= n else None,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class EcdfBand:
+    """Share of a sample that is not above each value, a step at each, and its band.
+
+    The first value is -inf: up to the least of the sample the share is 0, and its band is not.
+    """
+
+    value: NDArray[np.float64]
+    share: NDArray[np.float64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+
+def ecdf_band(sample: NDArray[np.float64], confidence: float = 0.95) -> EcdfBand:
+    """Estimate a distribution function with its pointwise exact band.
+
+    k of n values not above x are binomial (n, F(x)), so F(x) lies between the Clopper-Pearson bounds B(tail; k, n - k
+    + 1) and B(1 - tail; k + 1, n - k), quantiles of the beta distribution (Biometrika 26, 1934, 404-413).
+
+    Parameters
+    ----------
+    sample
+        Shape (n,); inf is what never happened: it counts in n only.
+    confidence
+        Two-sided, at each value on its own.
+
+    Returns
+    -------
+    EcdfBand
+        Shape (m + 1,) each, m the number of different finite values.
+
+    Raises
+    ------
+    ValueError
+        If the sample is empty or holds NaN, or the confidence lies outside (0, 1).
+    """
+    from scipy.stats import beta  # noqa: PLC0415
+
+    if sample.size == 0 or np.isnan(sample).any():
+        raise ValueError("a distribution needs at least one value, and no NaN")
+    if not 0.0 < confidence < 1.0:
+        raise ValueError("the confidence must lie between 0 and 1")
+    n, tail = sample.size, (1.0 - confidence) / 2.0
+    value, counts = np.unique(sample[sample < np.inf], return_counts=True)
+    k = np.concatenate([[0], np.cumsum(counts)])
+    low, high = np.zeros(k.size), np.ones(k.size)
+    low[1:] = beta.ppf(tail, k[1:], n - k[1:] + 1)
+    some = k < n
+    high[some] = beta.ppf(1.0 - tail, k[some] + 1, n - k[some])
+    return EcdfBand(np.concatenate([[-np.inf], value]), k / n, low, high)

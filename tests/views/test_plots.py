@@ -1,0 +1,299 @@
+"""Plots of flights: drawn for whatever a record holds, readable, equal for equal flights."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+from uavsim.flight import UNITS, Flight, load
+from uavsim.onboard.launch import DetectorSettings, build
+from uavsim.scenario import Scenario
+from uavsim.score import Judged, score
+from uavsim.studies.batch import Batch, ErrorTrace, _flat
+from uavsim.truth import STANDARD_GRAVITY
+from uavsim.views import batch, plots
+
+RELEASE, END, PUSH = 2.0, 6.5, 76.0  # s, s, m/s^2 along the rail
+ALL = ["launch.png", "pressure.png", "airspeed.png", "trajectory.png"]
+
+
+def made_up(*, push: float = PUSH, end: float = END, seed: int = 1) -> Flight:
+    """Make a flight of constant push along a level rail, then constant speed; the detector is the real one."""
+    scenario = Scenario(name="made up", seed=seed)
+    stroke, noise = scenario.launcher.stroke, np.random.default_rng(seed)
+    t = np.arange(0.0, end, 0.004)
+    since = np.clip(t - RELEASE, 0.0, np.sqrt(2.0 * stroke / push))
+    gone, speed = 0.5 * push * since**2, push * since
+    free = gone >= stroke
+    truth = {name: np.zeros(t.size) for name in UNITS["truth"] if name != "phase"}
+    truth |= {"t": t, "airspeed": speed, "vn": speed, "rail_s": gone}
+    truth["north"] = gone + np.where(free, speed * (t - t[np.argmax(free)]), 0.0) if free.any() else gone
+    truth["altitude"] = 1.5 + 0.1 * truth["north"]
+    truth["p_static"] = 101325.0 - 12.0 * truth["altitude"]
+    truth["p_total"] = truth["p_static"] + 0.6 * speed**2
+    truth["fx"] = np.where((since > 0.0) & ~free, push, 0.0)
+    truth["fz"] = np.full(t.size, -STANDARD_GRAVITY)
+    out = RELEASE + 0.8
+    truth["wing"] = np.clip((t - out) / 0.2, 0.0, 1.0)
+    at = np.arange(0.001, end, 0.0012)
+    felt = {axis: np.interp(at, t, truth[axis]) + noise.normal(0.0, 1.0, at.size) for axis in ("fx", "fy", "fz")}
+    accelerometer = pd.DataFrame({"t": at, **felt})
+    detector, rows = build(DetectorSettings(), 1.0 / 0.0012), []
+    for row in accelerometer.itertuples(index=False):
+        seen = detector.step(*row)
+        if row.t > RELEASE - 1.0:
+            rows.append((row.t, detector.level, detector.count, detector.total, detector.triggered, seen))
+    table = pd.DataFrame(rows, columns=list(UNITS["detector"]))
+    events = [{"t": float(when), "event": "launch_detected"} for when in table["t"][table["recognised"]]]
+    if events:
+        events += [{"t": out, "event": "wings_commanded"}, {"t": out + 0.3, "event": "motor_on"}]
+    polled = np.arange(0.005, end, 0.01)
+    air = {
+        name: np.interp(polled, t, truth[name]) + noise.normal(0.0, 3.0, polled.size)
+        for name in ("p_total", "p_static")
+    }
+    air_data = pd.DataFrame({"t": polled, **air, "temperature": 288.15, "t_total": polled, "t_static": polled})
+    true_speed = np.interp(polled, t, speed)
+    estimate = pd.DataFrame(
+        {
+            "t": polled,
+            "airspeed": true_speed + noise.normal(0.0, 0.1, polled.size),
+            "airspeed_sd": 0.1,
+            "airspeed_raw": true_speed + noise.normal(0.0, 0.2, polled.size),
+            **air,
+            "valid": true_speed > 5.0,
+        }
+    )
+    tables = {"accelerometer": accelerometer, "air_data": air_data, "estimate": estimate, "detector": table}
+    judged = Judged(scenario.to_dict(), {"truth": truth, **tables}, events, RELEASE, "completed", {})
+    phases = pd.DataFrame({**truth, "phase": judged.phases()})
+    return Flight(scenario.to_dict(), {"truth": phases, **tables}, events, score(judged))
+
+
+def without(flight: Flight, *tables: str) -> Flight:
+    """Make the recording of a flight that lacks some tables, and with them every figure that needs the truth."""
+    rest = {name: table for name, table in flight.tables.items() if name not in tables}
+    return Flight(flight.scenario, rest, flight.events, {"launch": {"release_time": None}})
+
+
+def blank(flight: Flight) -> Flight:
+    """Make a flight whose readings and estimates are all missing."""
+    tables = dict(flight.tables)
+    for name in ("accelerometer", "air_data", "estimate"):
+        tables[name] = tables[name].assign(**{c: np.nan for c in tables[name] if c not in ("t", "valid")})
+    return Flight(flight.scenario, tables, flight.events, flight.score)
+
+
+@pytest.fixture(scope="module")
+def flight() -> Flight:
+    return made_up()
+
+
+def check_png(path: Path) -> None:
+    """Check that a file is a PNG of a sensible size with something drawn on it."""
+    with Image.open(path) as image:
+        assert image.format == "PNG"
+        assert "Software" not in image.info
+        width, height = image.size
+        pixels = np.asarray(image.convert("L"))
+    assert 900 <= width <= 2000
+    assert 500 <= height <= 1500
+    inked = float((pixels < 250).mean())
+    assert 0.02 < inked < 0.9
+
+
+CASES: dict[str, tuple[Callable[[Flight], Flight], list[str]]] = {
+    "complete": (lambda flight: flight, ALL),
+    "missed": (lambda _: made_up(push=36.0), ALL),
+    "no truth": (lambda flight: without(flight, "truth"), ALL[:3]),
+    "accelerometer alone": (lambda flight: without(flight, "truth", "air_data", "estimate", "detector"), ALL[:1]),
+    "nothing but NaN, ended on the rail": (lambda _: blank(made_up(end=RELEASE + 0.2)), ALL),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_each_plot_that_has_data_is_drawn(case: str, flight: Flight, tmp_path: Path) -> None:
+    change, expected = CASES[case]
+    written = plots.save_plots(change(flight), tmp_path / "new" / "plots")
+    assert [path.name for path in written] == expected
+    assert sorted(path.name for path in (tmp_path / "new" / "plots").iterdir()) == sorted(expected)
+    for path in written:
+        check_png(path)
+
+
+def test_the_made_up_flights_are_what_they_stand_for(flight: Flight) -> None:
+    assert flight.score["launch"]["detected_time"] is not None
+    assert flight.score["airspeed"]["cruise"]["samples"] > 0
+    assert made_up(push=36.0).score["outcome"] == "missed_launch"
+    assert made_up(end=RELEASE + 0.2).score["flight"]["rail_exit_time"] is None
+
+
+def test_equal_flights_give_equal_files_and_nothing_is_left_behind(flight: Flight, tmp_path: Path) -> None:
+    before = dict(matplotlib.rcParams)
+    for name in ("a", "b"):
+        plots.save_plots(without(flight, "truth", "air_data", "estimate"), tmp_path / name)
+    assert (tmp_path / "a" / "launch.png").read_bytes() == (tmp_path / "b" / "launch.png").read_bytes()
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_thinning_keeps_extremes_and_ends() -> None:
+    rng = np.random.default_rng(3)
+    t = np.arange(30_000) * 1e-3
+    y = rng.normal(size=t.size)
+    y[12_345], y[23_456] = 40.0, -40.0
+    y[100:160] = np.nan
+    few_t, few = plots.thin(t, y, 2000)
+    assert few_t.size < 4000
+    assert np.all(np.diff(few_t) > 0.0)
+    assert (few_t[0], few_t[-1]) == (t[0], t[-1])
+    assert few_t[np.nanargmax(few)] == t[12_345]
+    assert few_t[np.nanargmin(few)] == t[23_456]
+    # every block's range is kept: the greatest of any stretch of two blocks is among the points drawn
+    for start in range(0, t.size - 60, 1000):
+        inside = (few_t >= t[start]) & (few_t <= t[start + 59])
+        assert np.nanmax(few[inside]) >= np.nanmax(y[start + 15 : start + 45])
+
+
+def test_labels_of_marks_never_cover_each_other_nor_cross_a_line() -> None:
+    figure, ((axes,),) = plots.sheet("title", "subtitle", (1.0,))
+    axes.set_xlim(0.0, 10.0)
+    rng = np.random.default_rng(5)
+    marks = [plots.Mark(float(t), "mark " * int(n)) for t, n in rng.uniform((-1.0, 1.0), (11.0, 4.0), (25, 2))]
+    placed = plots.stack(axes, marks)
+    assert {mark.t for mark, _, _ in placed} == {mark.t for mark in marks if 0.0 <= mark.t <= 10.0}
+    plots.make_room(figure, 1 + max(line for _, _, line in placed))
+    plots.flags([axes], placed)
+    figure.canvas.draw()
+    boxes = [text.get_window_extent() for text in axes.texts]
+    lines = [x for _, x, _ in placed]
+    for i, (box, (_, x, line)) in enumerate(zip(boxes, placed, strict=True)):
+        assert not any(box.overlaps(other) for other in boxes[i + 1 :])
+        low, high = (axes.transData.inverted().transform((edge, 0.0))[0] for edge in (box.x0, box.x1))
+        crossing = [
+            other for other, (_, _, top) in zip(lines, placed, strict=True) if low < other < high and top >= line
+        ]
+        assert crossing in ([], [x])
+
+
+def test_height_is_exaggerated_by_as_much_as_is_said(flight: Flight) -> None:
+    figure = plots._trajectory(plots._Record(flight))
+    assert figure is not None
+    stated = []
+    for axes in figure.axes[:2]:
+        words = axes.get_title(loc="right")
+        factor = 1.0 if words == "true aspect" else float(words.split()[-1].removesuffix("×"))
+        box = axes.get_window_extent()
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        assert (box.height / (top - bottom)) / (box.width / (right - left)) == pytest.approx(factor, rel=1e-6)
+        stated.append(factor)
+        assert bottom < 0.0
+    assert stated[0] >= 1.0
+
+
+def test_readings_and_truth_are_drawn_where_they_are(flight: Flight) -> None:
+    """The curves are the tables' numbers, in the units that the axes name."""
+    figure = plots._launch(plots._Record(flight))
+    assert figure is not None
+    lines = {line.get_label(): line for line in figure.axes[0].lines}
+    x, y = (np.asarray(values, float) for values in lines["$f_x$ measured"].get_data())
+    start = flight.score["launch"]["true_time"]
+    at = np.searchsorted(flight.accelerometer["t"], start + 1e-3 * x[10] - 1e-9)
+    assert y[10] * STANDARD_GRAVITY == pytest.approx(flight.accelerometer["fx"].iloc[at])
+    assert lines["$G_1$ = $G_2$ = 4.60 g"].get_ydata()[0] == pytest.approx(4.6, abs=1e-3)
+    marks = {text.get_text(): text for text in figure.axes[0].texts}
+    assert {"release", "true launch", "true 4.5 g", "detected", "rail exit"} <= marks.keys()
+
+
+# -- several flights -------------------------------------------------------------------------------------------------
+
+
+def batch_of(flights: list[Flight], *, complete: bool = True) -> Batch:
+    """Gather flights as `fly_seeds` does."""
+    rows = [
+        {
+            "index": 0,
+            "seed": f.score["seed"],
+            "outcome": f.score["outcome"],
+            **_flat({k: v for k, v in f.score.items() if k not in ("seed", "outcome", "versions", "requirements")}),
+            "requirements.met": True,
+        }
+        for f in flights
+    ]
+    rng = np.random.default_rng(7)
+    traces = [ErrorTrace(f.score["seed"], 0.1 * rng.random(40), 0.2 * rng.random(40)) for f in flights]
+    kept = {flights[0].score["seed"]: flights[0]}
+    return Batch(Scenario(name="made up"), pd.DataFrame(rows), traces, kept, complete, 1.5)
+
+
+@pytest.fixture(scope="module")
+def several(flight: Flight) -> Batch:
+    return batch_of([flight, made_up(seed=2), made_up(push=36.0, seed=3)])
+
+
+def test_a_batch_is_written_with_all_its_parts(several: Batch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[Path] = []
+    monkeypatch.setattr(batch, "save_plots", lambda _, folder: drawn.append(folder))  # drawn above already
+    target = tmp_path / "new" / "three"
+    batch.save(several, target, overwrite=False, plots=True)
+    pd.testing.assert_frame_equal(pd.read_parquet(target / "runs.parquet"), several.runs)
+    described = json.loads((target / "campaign.json").read_text())
+    assert described["seeds"] == [1, 2, 3]
+    assert (described["root_seed"], described["complete"], described["wall_time"]) == (1, True, 1.5)
+    assert Scenario.from_dict(described["scenario"]) == several.scenario
+    assert described["versions"]["numpy"] == np.__version__
+    assert set(described["processor"]) == {"machine", "name", "features"}
+    assert [path.name for path in (target / "flights").iterdir()] == ["1"]
+    assert load(target / "flights" / "1").score == several.kept[1].score
+    assert len(drawn) == 1
+    names = {path.name for path in (target / "plots").iterdir()}
+    assert names == {"latency.png", "airspeed_error.png", "outcomes.png"}
+    for name in names:
+        check_png(target / "plots" / name)
+    assert [path.name for path in target.parent.iterdir()] == ["three"]
+
+
+def test_a_batch_is_whole_or_not_there(several: Batch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("pen broke")
+
+    target = tmp_path / "three"
+    batch.save(several, target, overwrite=False, plots=False)
+    assert not (target / "plots").exists()
+    with pytest.raises(FileExistsError, match="not empty"):
+        batch.save(several, target, overwrite=False, plots=False)
+    before = (target / "campaign.json").read_bytes()
+    monkeypatch.setattr(batch, "save_batch_plots", fail)
+    monkeypatch.setattr(batch, "save_plots", lambda *_: None)
+    with pytest.raises(RuntimeError):
+        batch.save(several, target, overwrite=True, plots=True)
+    assert (target / "campaign.json").read_bytes() == before
+    with pytest.raises(RuntimeError):
+        batch.save(several, tmp_path / "other", overwrite=False, plots=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["three"]
+
+
+def test_missed_launches_have_no_latency_to_draw(tmp_path: Path) -> None:
+    missed = batch_of([made_up(push=36.0)], complete=False)
+    missed.traces[0] = ErrorTrace(1, np.empty(0), np.empty(0))
+    assert [path.name for path in batch.save_batch_plots(missed, tmp_path)] == ["outcomes.png"]
+
+
+def test_a_launch_that_was_missed_counts_as_one_detected_never(several: Batch) -> None:
+    latencies = batch.latencies_since(several, "true_time")
+    expected = [1e3 * several.runs["launch.latency"][i] for i in (0, 1)]
+    assert latencies[:2] == pytest.approx(expected)
+    assert latencies[2] == np.inf
+    # the third never reaches 4.5 g, so nothing is said of it since then
+    assert batch.latencies_since(several, "crossing_time").size == 2
+
+
+def test_processor_features_are_those_of_floating_point(tmp_path: Path) -> None:
+    cpuinfo = tmp_path / "cpuinfo"
+    cpuinfo.write_text("processor : 0\nflags\t\t: fpu sse4_2 avx2 fma ht avx\n\nflags : avx512f\n")
+    assert batch.processor_features(cpuinfo) == ["avx", "avx2", "fma", "sse4_2"]
+    assert batch.processor_features(tmp_path / "none") == []
