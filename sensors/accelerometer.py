@@ -10,11 +10,13 @@ bit q and clipping at the range. The part's decimation filter is steep; in the s
 same -3 dB frequency, which costs a comparable delay; the white noise has the variance that the steep filter leaves,
 σ = n √(rate/2).
 
-From scale on everything is kept in counts (units of q), with bias, drift and noise summed beforehand, a block at a
-time: a sample is then an interpolation, a gain and an addition. The arithmetic is written out for three axes because a
-loop over them costs as much as all the rest.
+From scale on everything is kept in counts (units of q), bias, drift and noise summed beforehand, a block at a time:
+a sample is then an interpolation, a gain and an addition. This runs a thousand times a second of flight, so the
+arithmetic is written out for three axes (a loop over them costs as much as all the rest) and the unit's state lives
+in the local variables of a coroutine (attributes would cost twice as much).
 """
 
+from collections.abc import Callable, Generator
 from math import expm1, pi
 
 from sensors.clock import Clock
@@ -28,10 +30,14 @@ from sensors.vibration import Vibration
 ROUND = 1.5 * 2.0**52
 
 
+Reading = tuple[float, float, float, float]
+"""t, s, and specific force x, y, z, m/s²."""
+Felt = tuple[float, Triple]
+"""Plant time, s, and true specific force then, body axes, m/s²."""
+
+
 class Accelerometer:
     """One unit of an accelerometer, stepped with the plant.
-
-    Once a plant step: `feel`, then, `while acc.due <= t`, `sample`.
 
     Parameters
     ----------
@@ -52,17 +58,20 @@ class Accelerometer:
 
     Attributes
     ----------
-    due : float
-        Time of the next sample, s.
+    step : callable
+        `step((t, force))`, once a plant step, takes in the true specific force at plant time t, s, body axes, m/s²,
+        and returns the readings since the last step, a tuple of (t, fx, fy, fz), s and m/s²: none, one, or more if the
+        part is faster than the plant. The first force is taken to have been there before.
     description : AccelerometerDescription
     bias, scale_error : (x, y, z)
         Turn-on errors of this unit, m/s² and a fraction.
+    phase : float
+        Time of the first sample, s.
     """
 
-    __slots__ = (
-        "_a", "_b0", "_b1", "_before", "_bottom", "_count", "_error", "_gain", "_lsb", "_now", "_phase", "_rate",
-        "_state", "_steps_per_second", "_t", "_top", "_vibration", "bias", "description", "due", "scale_error",
-    )  # fmt: skip
+    __slots__ = ("bias", "description", "phase", "scale_error", "step")
+
+    step: Callable[[Felt], tuple[Reading, ...]]
 
     def __init__(
         self,
@@ -77,73 +86,63 @@ class Accelerometer:
     ) -> None:
         d = self.description = description
         self._draw_unit(streams, name, (bias, bias, bias) if isinstance(bias, float | int) else bias, unit)
-
-        self._a, self._b0, self._b1 = one_pole(d.bandwidth, dt)
-        self._vibration = Vibration.still() if vibration is None else vibration
-        self._before: Triple | None = None
-        self._now = self._state = (0.0, 0.0, 0.0)
-        self._t = 0.0
-        self._steps_per_second = 1.0 / dt
-
-        self._lsb = lsb = d.resolution
-        self._top = round(d.range / lsb) - 1.0  # two's complement: -2^(n-1) … 2^(n-1) - 1
-        self._bottom = -self._top - 1.0
-        sx, sy, sz = self.scale_error
-        self._gain = ((1.0 + sx) / lsb, (1.0 + sy) / lsb, (1.0 + sz) / lsb)
         interval = 1.0 / d.rate
-        self._error = rows(
+        error = rows(
             (
                 constant(self.bias),
                 gauss_markov(streams(f"{name}.drift"), d.drift_sd, d.correlation_time, interval, axes=3),
                 random_walk(streams(f"{name}.walk"), d.random_walk, interval, axes=3),
                 white(streams(f"{name}.white"), d.noise_sd),
             ),
-            scale=1.0 / lsb,
+            scale=1.0 / d.resolution,
         )
-
-        # The clock's arithmetic is repeated in sample(): a call of its tick() would cost a tenth of the sample.
         clock = Clock.drawn(d.rate, streams(f"{name}.clock"))
-        self._rate, self._phase, self._count = clock.rate, clock.phase, 0
-        self.due = clock.due
+        self.phase = clock.phase
+        unit_at_work = self._sense(Vibration.still() if vibration is None else vibration, clock, error, dt)
+        next(unit_at_work)
+        self.step = unit_at_work.send
 
-    def feel(self, t: float, fx: float, fy: float, fz: float) -> None:
-        """Take in the true specific force at plant time `t` (s), body axes, m/s²; the first is taken to be steady."""
-        vx, vy, vz = self._vibration.step()
-        fx += vx
-        fy += vy
-        fz += vz
-        a, b0, b1 = self._a, self._b0, self._b1
-        if self._before is None:
-            c = 1.0 - b1
-            self._state = (c * fx, c * fy, c * fz)
-            self._now = (fx, fy, fz)
-        sx, sy, sz = self._state
-        self._before = self._now
-        self._now = (x, y, z) = (sx + b1 * fx, sy + b1 * fy, sz + b1 * fz)
-        self._state = (a * x + b0 * fx, a * y + b0 * fy, a * z + b0 * fz)
-        self._t = t
+    def _sense(
+        self, vibration: Vibration, clock: Clock, error: Callable[[], list[float]], dt: float
+    ) -> Generator[tuple[Reading, ...], Felt, None]:
+        """Take in the force of each plant step and yield the readings up to it."""
+        lsb = self.description.resolution
+        gx, gy, gz = ((1.0 + s) / lsb for s in self.scale_error)
+        top = round(self.description.range / lsb) - 1.0  # two's complement: -2^(n-1) … 2^(n-1) - 1
+        bottom = -top - 1.0
+        a, b0, b1 = one_pole(self.description.bandwidth, dt)
+        steps_per_second = 1.0 / dt
+        rate, phase, count, due = clock.rate, clock.phase, 0, clock.due
 
-    def sample(self) -> tuple[float, float, float, float]:
-        """Return the reading (t, fx, fy, fz) that is due, s and m/s², and set `due` to the next."""
-        due = self.due
-        w = (self._t - due) * self._steps_per_second  # 0 at the present plant step, 1 at the one before
-        x, y, z = self._now
-        bx, by, bz = self._before  # type: ignore[misc]  # felt before it is asked
-        gx, gy, gz = self._gain
-        ex, ey, ez = self._error()
-        x = (x + w * (bx - x)) * gx + ex + ROUND - ROUND
-        y = (y + w * (by - y)) * gy + ey + ROUND - ROUND
-        z = (z + w * (bz - z)) * gz + ez + ROUND - ROUND
-        top, bottom, lsb = self._top, self._bottom, self._lsb
-        if not bottom <= x <= top:
-            x = top if x > top else max(x, bottom)
-        if not bottom <= y <= top:
-            y = top if y > top else max(y, bottom)
-        if not bottom <= z <= top:
-            z = top if z > top else max(z, bottom)
-        self._count = count = self._count + 1
-        self.due = self._phase + count / self._rate
-        return due, x * lsb, y * lsb, z * lsb
+        t, (x, y, z) = yield ()
+        vx, vy, vz = vibration.step()
+        x, y, z = ox, oy, oz = x + vx, y + vy, z + vz
+        sx, sy, sz = (1.0 - b1) * x, (1.0 - b1) * y, (1.0 - b1) * z
+        while True:
+            readings: tuple[Reading, ...] = ()
+            while due <= t:
+                w = (t - due) * steps_per_second  # 0 at the present plant step, 1 at the one before
+                ex, ey, ez = error()
+                nx = (x + w * (ox - x)) * gx + ex + ROUND - ROUND
+                ny = (y + w * (oy - y)) * gy + ey + ROUND - ROUND
+                nz = (z + w * (oz - z)) * gz + ez + ROUND - ROUND
+                if not bottom <= nx <= top:
+                    nx = top if nx > top else max(nx, bottom)
+                if not bottom <= ny <= top:
+                    ny = top if ny > top else max(ny, bottom)
+                if not bottom <= nz <= top:
+                    nz = top if nz > top else max(nz, bottom)
+                readings = (*readings, (due, nx * lsb, ny * lsb, nz * lsb))
+                count += 1
+                due = phase + count / rate
+            t, (fx, fy, fz) = yield readings
+            vx, vy, vz = vibration.step()
+            fx += vx
+            fy += vy
+            fz += vz
+            ox, oy, oz = x, y, z
+            x, y, z = sx + b1 * fx, sy + b1 * fy, sz + b1 * fz
+            sx, sy, sz = a * x + b0 * fx, a * y + b0 * fy, a * z + b0 * fz
 
     def _draw_unit(self, streams: Streams, name: str, extra: Triple, unit: Unit) -> None:
         d = self.description

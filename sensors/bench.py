@@ -5,6 +5,7 @@ the z axis reads -9.80665 m/s². The readings come from the very code that flies
 """
 
 from itertools import chain
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,18 +78,16 @@ def _accelerometer_rows(
     description: AccelerometerDescription, duration: float, seed: int, unit: Unit
 ) -> "Iterator[tuple[float, ...]]":
     device = Accelerometer(description, Streams(seed), unit=unit)
-    device.feel(0.0, 0.0, 0.0, -G0)  # once is enough: the force is steady
-    while device.due < duration:
-        yield device.sample()
+    for second in range(ceil(duration) + 1):  # the force is steady: once a second is often enough
+        for reading in device.step((float(second), (0.0, 0.0, -G0))):
+            if reading[0] < duration:
+                yield reading
 
 
 def _pressure_rows(
     description: PressureDescription, duration: float, seed: int, unit: Unit
 ) -> "Iterator[tuple[float, ...]]":
     device = PressureSensor(description, Streams(seed), unit=unit)
-    while True:
-        device.convert(PRESSURE, TEMPERATURE)
-        pressure, temperature, t = device.latest(float("inf"))
-        if t >= duration:
-            return
+    while device.end < duration:
+        pressure, temperature, t = device.read(device.end, lambda _: (PRESSURE, TEMPERATURE))
         yield t, pressure, temperature

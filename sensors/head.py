@@ -10,6 +10,7 @@ t_total and t_static are the ends of the conversions carried, and a value that i
 cover both ports feel the static pressure, wind or not.
 """
 
+from collections.abc import Callable
 from math import inf
 
 from sensors.clock import Clock
@@ -40,13 +41,15 @@ class AirDataHead:
     Attributes
     ----------
     due : float
-        Time of the next event inside, s.
+        Time of the next poll, s.
     total, static : PressureSensor
     covered_until : float
         May be set during a flight.
     """
 
-    __slots__ = ("_poll", "covered_until", "due", "static", "total")
+    __slots__ = ("_air", "_poll", "covered_until", "due", "static", "total")
+
+    _air: Callable[[float], Air]
 
     def __init__(
         self,
@@ -69,17 +72,18 @@ class AirDataHead:
         )
         self.covered_until = covered_until
         self._poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
-        self.due = min(self.total.due, self.static.due, self._poll.due)
+        self.due = self._poll.due
 
-    def step(self, t0: float, before: Air, t1: float, now: Air) -> list[Row]:
-        """Go through the events up to plant time `t1` and return the rows polled on the way.
+    def step(self, until: float, air: Callable[[float], Air]) -> list[Row]:
+        """Return the rows polled up to plant time `until`.
 
         Parameters
         ----------
-        t0, t1 : float
-            Two successive plant times, s. To be called when `due` <= t1.
-        before, now : tuple of float
-            True (total pressure Pa, static pressure Pa, temperature K) at t0 and t1, linear between.
+        until : float
+            The present plant time, s.
+        air : callable
+            Gives the true (total pressure Pa, static pressure Pa, temperature K) at any time since the last poll; asked
+            only at the middle of a conversion that is read.
 
         Returns
         -------
@@ -87,27 +91,24 @@ class AirDataHead:
             (t, p_total, p_static, temperature, t_total, t_static): s, Pa, Pa, K, s, s. NaN before a sensor's first
             finished conversion. The temperature is the static sensor's.
         """
+        self._air = air
         rows: list[Row] = []
-        total, static, poll = self.total, self.static, self._poll
-        due = self.due
-        while due <= t1:
-            w = (due - t0) / (t1 - t0)
-            if due == total.due:
-                felt = 1 if due < self.covered_until else 0
-                total.convert(before[felt] + w * (now[felt] - before[felt]), before[2] + w * (now[2] - before[2]))
-            elif due == static.due:
-                static.convert(before[1] + w * (now[1] - before[1]), before[2] + w * (now[2] - before[2]))
-            else:
-                rows.append(self._read(due))
-                poll.tick()
-            due = min(total.due, static.due, poll.due)
-        self.due = due
+        while self.due <= until:
+            t = self.due
+            p_total, _, t_total = self.total.read(t, self._total_port)
+            p_static, temperature, t_static = self.static.read(t, self._static_port)
+            rows.append((t, p_total, p_static, temperature, t_total, t_static))
+            self._poll.tick()
+            self.due = self._poll.due
         return rows
 
-    def _read(self, t: float) -> Row:
-        p_total, _, t_total = self.total.latest(t)
-        p_static, temperature, t_static = self.static.latest(t)
-        return t, p_total, p_static, temperature, t_total, t_static
+    def _total_port(self, t: float) -> tuple[float, float]:
+        p_total, p_static, temperature = self._air(t)
+        return (p_static if t < self.covered_until else p_total), temperature
+
+    def _static_port(self, t: float) -> tuple[float, float]:
+        _, p_static, temperature = self._air(t)
+        return p_static, temperature
 
 
 def head_noise(settings: AirDataSettings) -> tuple[float, float, float]:

@@ -89,6 +89,12 @@ def rows(sources: Iterable[Iterator[Array]], scale: ArrayLike = 1.0) -> Callable
     return chain.from_iterable((reduce(np.add, block) * factor).tolist() for block in blocks).__next__
 
 
+def values(sources: Iterable[Iterator[Array]]) -> Callable[[], float]:
+    """Return a function that gives, sample by sample, the sum of all sources of a single axis."""
+    blocks = zip(*sources, strict=True)
+    return chain.from_iterable(reduce(np.add, block)[:, 0].tolist() for block in blocks).__next__
+
+
 def band_limited(generator: np.random.Generator, count: int, dt: float, band: tuple[float, float], axes: int) -> Array:
     """Return noise with a flat spectrum inside a band and nothing outside, of rms exactly 1 on each axis.
 

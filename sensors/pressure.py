@@ -14,14 +14,16 @@ where the push ends: 8 g gone in 60 ms at 26 m/s are 40 kPa/s². At x1 (4.8 ms) 
 the noise; at x32 (69 ms) it is 8 Pa, where the lag of half a window, which is modelled, is 90 Pa.
 """
 
+from collections.abc import Callable
 from math import nan
 
 from sensors.clock import Clock
 from sensors.description import PressureDescription, Unit, draw_error
-from sensors.noise import constant, gauss_markov, random_walk, rows, white
+from sensors.noise import constant, gauss_markov, random_walk, values, white
 from sensors.streams import Streams
 
 Conversion = tuple[float, float, float]  # pressure Pa, temperature K, end of conversion s
+Truth = Callable[[float], tuple[float, float]]  # time s -> pressure at the port Pa, temperature K
 
 
 class DigitalFilter:
@@ -47,7 +49,7 @@ class DigitalFilter:
 
 
 class PressureSensor:
-    """One unit of a pressure sensor, told the truth at the middle of each conversion.
+    """One unit of a pressure sensor, which looks at the truth at the middle of each conversion.
 
     Parameters
     ----------
@@ -66,16 +68,16 @@ class PressureSensor:
 
     Attributes
     ----------
-    due : float
-        Middle of the next conversion, s, at which `convert` must be called.
+    end : float
+        End of the conversion under way, s.
     description : PressureDescription
     offset, scale_error, rate_error, temperature_offset : float
         Turn-on errors of this unit, Pa, Pa/Pa, a fraction and K.
     """
 
     __slots__ = (
-        "_clock", "_error", "_filter", "_half", "_pending", "_ready", "_temperature_error", "_temperature_filter",
-        "description", "due", "offset", "rate_error", "scale_error", "temperature_offset",
+        "_count", "_error", "_filters", "_first_end", "_half", "_rate", "_ready", "_temperature_error", "description",
+        "end", "offset", "rate_error", "scale_error", "temperature_offset",
     )  # fmt: skip
 
     def __init__(
@@ -95,12 +97,13 @@ class PressureSensor:
             streams(f"{name}.temperature.offset"), d.temperature_offset_sd, d.temperature_offset_limit, unit
         )
         speed = 1.0 + self.rate_error
-        self._clock = Clock.drawn(d.rate * speed, streams(f"{name}.clock"))
+        clock = Clock.drawn(d.rate * speed, streams(f"{name}.clock"))
+        self._rate, self._count = clock.rate, 0
         self._half = 0.5 * d.mode.conversion_time / speed
-        self.due = self._clock.due + self._half
+        self.end = self._first_end = clock.due + 2.0 * self._half
 
-        interval = 1.0 / self._clock.rate
-        self._error = rows(
+        interval = 1.0 / self._rate
+        self._error = values(
             (
                 constant(self.offset),
                 gauss_markov(streams(f"{name}.drift"), d.drift_sd, d.correlation_time, interval),
@@ -108,35 +111,50 @@ class PressureSensor:
                 white(streams(f"{name}.white"), d.white_sd),
             )
         )
-        self._temperature_error = rows(
+        self._temperature_error = values(
             (constant(self.temperature_offset), white(streams(f"{name}.temperature.white"), d.temperature_white_sd))
         )
-        self._filter = DigitalFilter(d.iir_weight)
-        self._temperature_filter = DigitalFilter(d.iir_weight)
-        self._pending: Conversion | None = None
+        off = d.iir_weight == 1.0
+        self._filters = None if off else (DigitalFilter(d.iir_weight), DigitalFilter(d.iir_weight))
         self._ready: Conversion = (nan, nan, nan)
 
-    def convert(self, pressure: float, temperature: float) -> None:
-        """Take in the true pressure (Pa) and temperature (K) at `due`, and set `due` to the next conversion."""
-        if self._pending is not None:
-            self._ready = self._pending
+    def read(self, t: float, truth: Truth) -> Conversion:
+        """Return the last conversion finished by `t`.
+
+        Parameters
+        ----------
+        t : float
+            Time of the reading, s; not before the last one.
+        truth : callable
+            Gives the true pressure at the port, Pa, and temperature, K, at the middle of a conversion since the last
+            reading.
+
+        Returns
+        -------
+        tuple of float
+            Pressure, Pa, temperature, K, end of the conversion, s; NaN before the first.
+        """
+        while self.end <= t:
+            end, error, temperature_error = self.end, self._error(), self._temperature_error()
+            self._count = count = self._count + 1
+            self.end = self._first_end + count / self._rate
+            if self.end <= t and self._filters is None:
+                continue  # nobody will see it: the next one is finished too
+            pressure, temperature = truth(end - self._half)
+            self._ready = self._convert(pressure, temperature, error, temperature_error, end)
+        return self._ready
+
+    def _convert(
+        self, pressure: float, temperature: float, error: float, temperature_error: float, end: float
+    ) -> Conversion:
         d = self.description
-        (error,) = self._error()
-        (temperature_error,) = self._temperature_error()
         low, high = d.range
         p = pressure + self.scale_error * (pressure - d.reference_pressure) + error
-        p = _quantise(min(max(p, low), high), d.resolution)
+        p = _quantise(min(max(p, low), high), d.mode.resolution)
         kelvin = _quantise(temperature + temperature_error, d.temperature_resolution)
-        self._pending = (self._filter.step(p), self._temperature_filter.step(kelvin), self.due + self._half)
-        self._clock.tick()
-        self.due = self._clock.due + self._half
-
-    def latest(self, t: float) -> Conversion:
-        """Return (pressure Pa, temperature K, end s) of the last conversion finished by `t`; NaN before the first."""
-        if self._pending is not None and self._pending[2] <= t:
-            self._ready = self._pending
-            self._pending = None
-        return self._ready
+        if self._filters is not None:
+            p, kelvin = self._filters[0].step(p), self._filters[1].step(kelvin)
+        return p, kelvin, end
 
 
 def _quantise(value: float, step: float) -> float:

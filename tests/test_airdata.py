@@ -301,8 +301,8 @@ def test_the_loop_functions_are_the_public_ones():
         air = (total, 95_000.0, 288.0)
         keywords = dict(zip(("total", "static", "temperature"), air, strict=True))
         for fast, model in (
-            (airdata._airspeed_compressible, "compressible"),
-            (airdata._airspeed_bernoulli, "bernoulli"),
+            (airdata.compressible_airspeed, "compressible"),
+            (airdata.bernoulli_airspeed, "bernoulli"),
         ):
             np.testing.assert_equal(fast(*air), airdata.airspeed(**keywords, model=model))
 

@@ -126,7 +126,7 @@ def total_pressure(*, static: Numbers, mach: Numbers | float) -> Numbers:
     _require_pressure(ps)
     if _any(m < -MACH_ROUNDING) or _any(m > 1.0 + MACH_ROUNDING):
         raise ValueError("Mach number must be from 0 to 1")
-    total: Numbers = _total_pressure(ps, m, xp)
+    total: Numbers = isentropic_total(ps, m, xp)
     return total
 
 
@@ -283,7 +283,7 @@ def pressure_height(*, static: Numbers, reference: Numbers | float, temperature:
     _require_pressure(ps)
     _require_pressure(reference_pressure)
     _require_temperature(t)
-    height: Numbers = GAS_CONSTANT_DRY_AIR / STANDARD_GRAVITY * t * xp.log(reference_pressure / ps)
+    height: Numbers = hypsometric_height(ps, reference_pressure, t, xp)
     return height
 
 
@@ -294,7 +294,7 @@ def pressure_height(*, static: Numbers, reference: Numbers | float, temperature:
 # log1p and expm1 instead of powers keep the digits of p_t − p_s at low speed.
 
 
-def _total_pressure(static: Any, mach: Any, xp: Any = math) -> Any:
+def isentropic_total(static: Any, mach: Any, xp: Any = math) -> Any:
     return static + static * xp.expm1(xp.log1p(0.5 * (GAMMA - 1.0) * mach * mach) / _EXPONENT)
 
 
@@ -306,13 +306,18 @@ def _bernoulli_speed(difference: Any, static: Any, temperature: Any, xp: Any = m
     return xp.sqrt(_BERNOULLI * temperature * difference / static)
 
 
-def _airspeed_compressible(total: float, static: float, temperature: float) -> float:
+def hypsometric_height(static: Any, reference: Any, temperature: Any, xp: Any = math) -> Any:
+    """Height above the place of the reference pressure in air of one temperature, m; Pa and K, without checks."""
+    return GAS_CONSTANT_DRY_AIR / STANDARD_GRAVITY * temperature * xp.log(reference / static)
+
+
+def compressible_airspeed(total: float, static: float, temperature: float) -> float:
     """Airspeed of dry air, floats only, clipped at 0; NaN in any argument gives NaN."""
     speed: float = _compressible_speed(0.0 if total < static else total - static, static, temperature)
     return speed
 
 
-def _airspeed_bernoulli(total: float, static: float, temperature: float) -> float:
+def bernoulli_airspeed(total: float, static: float, temperature: float) -> float:
     """Airspeed of dry air by the incompressible relation, floats only, clipped at 0; NaN gives NaN."""
     speed: float = _bernoulli_speed(0.0 if total < static else total - static, static, temperature)
     return speed

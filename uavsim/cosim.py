@@ -18,12 +18,15 @@ from typing import TYPE_CHECKING, Any
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
-from uavsim.onboard.flight_computer import Estimate, FlightComputer
+from uavsim.onboard.flight_computer import Detector, Estimate, FlightComputer
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.score import Judged, score
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from uavsim.plants.jsbsim import JsbsimPlant, JsbsimSettings
 
 STEP_RATE = 1000.0  # Hz, of the plant
@@ -62,6 +65,27 @@ def draw(scenario: Scenario, index: int = 0) -> Draws:
     )
 
 
+class WatchedDetector:
+    """A launch detector whose state is written down at each step from a given time on."""
+
+    def __init__(self, detector: Detector, record_from: float) -> None:
+        self.detector = detector
+        self.rows: list[tuple[float, int, int, int, bool, bool]] = []
+        self._from = record_from
+
+    def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
+        """Take one reading; see the detector's own."""
+        recognised = self.detector.step(t, fx, fy, fz)
+        if t >= self._from:
+            d = self.detector
+            self.rows.append((t, d.level, d.count, d.total, d.triggered, recognised))
+        return recognised
+
+    def reset(self) -> None:
+        """Forget everything and watch again."""
+        self.detector.reset()
+
+
 class Onboard:
     """The flight computer of a scenario, fed with readings; keeps what it says.
 
@@ -77,36 +101,32 @@ class Onboard:
             "open": (release_time - air.tare_duration, release_time),
             "none": None,
         }[air.tare]
+        self._release_time = release_time
+        self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
         self.computer = FlightComputer(
             scenario.flight_computer,
-            launch.build(scenario.detector, rate),
+            self._detector,
             airspeed.build(scenario.estimator, believed_noise(scenario), tare),
             rate,
         )
+        self.accelerometer = self.computer.accelerometer
         self.estimates: list[Estimate] = []
-        self.detections: list[tuple[Any, ...]] = []
-        self._record_from = release_time - DETECTOR_LEAD
-        self._record_to = math.inf
-
-    def accelerometer(self, reading: Reading) -> None:
-        """Take one reading of specific force."""
-        self.computer.accelerometer(*reading)
-        if self._record_from <= reading[0] <= self._record_to:
-            self._record(reading[0])
-
-    def _record(self, t: float) -> None:
-        computer = self.computer
-        d = computer.detector
-        recognised = bool(computer.events) and computer.events[-1] == {"t": t, "event": "launch_detected"}
-        self.detections.append((t, d.level, d.count, d.total, d.triggered, recognised))
-        if recognised and t >= self._record_from + DETECTOR_LEAD:
-            self._record_to = t + DETECTOR_TRAIL
 
     def air_data(self, reading: AirReading) -> None:
         """Take one reading of the head."""
         estimate = self.computer.air_data(*reading)
         if estimate is not None:
             self.estimates.append(estimate)
+
+    def detections(self, times: "NDArray[np.float64]") -> list[tuple[Any, ...]]:
+        """Return the detector's state from 1 s before release to recognition + 0.1 s, at all samples' `times`, s."""
+        rows = self._detector.rows
+        found = next((i for i, row in enumerate(rows) if row[-1] and row[0] >= self._release_time), None)
+        if found is None:
+            return rows
+        t, *state, _ = rows[found]
+        after = times[(times > t) & (times <= t + DETECTOR_TRAIL)]
+        return rows[: found + 1] + [(float(later), *state, False) for later in after]
 
 
 class Cosimulation:
@@ -152,13 +172,13 @@ class Cosimulation:
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
         self.ended = ""
-        self.accelerometer.feel(0.0, self.plant.specific_force())
+        self.accelerometer.step((0.0, self.plant.specific_force()))
 
     def advance(self, steps: int) -> None:
         """Fly up to `steps` plant steps; `ended` tells why it stopped early."""
         plant, onboard, head, accelerometer = self.plant, self.onboard, self.head, self.accelerometer
-        step, felt, feel, sample = plant.step, plant.specific_force, accelerometer.feel, accelerometer.sample
-        keep, computer = self.readings.extend, onboard.computer
+        step, felt, feel = plant.step, plant.specific_force, accelerometer.step
+        keep, take, computer = self.readings.extend, onboard.accelerometer, onboard.computer
         on_rail = plant.on_rail
         for _ in range(min(steps, self.steps - plant.k)):
             commands = computer.commands
@@ -167,14 +187,13 @@ class Cosimulation:
             if not plant.aloft:
                 self.ended = "crashed" if plant.finite else "diverged"
                 return
-            feel(t, felt())
+            readings = feel((t, felt()))
             air = head.step(t, plant.air) if head.due <= t else ()
-            while accelerometer.due <= t:
-                reading = sample()
+            for reading in readings:
                 if air and air[0][0] < reading[0]:
                     air = self._take_air(air, reading[0])
                 keep(reading)
-                onboard.accelerometer(reading)
+                take(*reading)
             if air:
                 self._take_air(air, math.inf)
             if computer.commands is not commands:
@@ -303,7 +322,7 @@ def replay(flight: Flight) -> Flight:
         onboard.air_data(reading)
     tables = dict(flight.tables)
     tables["estimate"] = frame_of_rows("estimate", onboard.estimates)
-    tables["detector"] = frame_of_rows("detector", onboard.detections)
+    tables["detector"] = frame_of_rows("detector", onboard.detections(flight.accelerometer["t"].to_numpy()))
     tables = {name: tables[name] for name in flight.tables}
     ended = flight.score.get("outcome", "")
     judged = Judged(scenario.to_dict(), tables, onboard.computer.events, draws.release_time, ended, _versions())
@@ -313,11 +332,12 @@ def replay(flight: Flight) -> Flight:
 def _flight(simulation: Cosimulation) -> Flight:
     plant, onboard = simulation.plant, simulation.onboard
     truth = plant.truth()
+    accelerometer = frame_of_floats("accelerometer", simulation.readings)
     tables = {
-        "accelerometer": frame_of_floats("accelerometer", simulation.readings),
+        "accelerometer": accelerometer,
         "air_data": frame_of_floats("air_data", simulation.air_readings),
         "estimate": frame_of_rows("estimate", onboard.estimates),
-        "detector": frame_of_rows("detector", onboard.detections),
+        "detector": frame_of_rows("detector", onboard.detections(accelerometer["t"].to_numpy())),
     }
     scenario = simulation.scenario.to_dict()
     judged = Judged(

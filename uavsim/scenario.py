@@ -56,7 +56,7 @@ class Scenario:
 
     name: str = "scenario"
     description: str = ""
-    duration: Annotated[float, Interval(ge=1, le=3600)] = 30.0
+    duration: Annotated[float, Interval(ge=1, le=3600)] = 35.0
     seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 1
     expect: Outcome = "cruise"
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)

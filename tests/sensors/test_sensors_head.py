@@ -21,7 +21,7 @@ def _fly(head, air, duration, dt=DT):
     for k in range(1, round(duration / dt) + 1):
         t0, t1 = (k - 1) * dt, k * dt
         if head.due <= t1:
-            rows += head.step(t0, air(t0), t1, air(t1))
+            rows += head.step(t1, air)
     return np.array(rows)
 
 

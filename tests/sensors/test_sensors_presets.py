@@ -203,7 +203,7 @@ def test_import_is_light():
         "assert not any(name.startswith('sensors.') for name in sys.modules)\n"
         "head = sensors.AirDataHead(sensors.AirDataSettings(), sensors.Streams(1))\n"
         "device = sensors.Accelerometer(sensors.preset('lsm6dso32'), sensors.Streams(1))\n"
-        "device.feel(0.0, 0.0, 0.0, 0.0); device.sample()\n"
+        "device.step((0.0, (0.0, 0.0, 0.0)))\n"
         "heavy = {'pandas', 'scipy', 'pydantic', 'uavsim', 'jsbsim', 'matplotlib'} & set(sys.modules)\n"
         "assert not heavy, heavy\n"
     )

@@ -20,8 +20,7 @@ def _record(device, count, truth=lambda t: 100_000.0, temperature=298.15):
     """Conversions of a true pressure p(t): columns pressure, temperature, end of conversion."""
     rows = []
     for _ in range(count):
-        device.convert(truth(device.due), temperature)
-        rows.append(device.latest(np.inf))
+        rows.append(device.read(device.end, lambda t: (truth(t), temperature)))
     return np.array(rows)
 
 
@@ -36,7 +35,7 @@ def test_a_conversion_carries_the_truth_of_its_middle(mode):
     """A ramp of 2450 Pa/s, a catapult's, is read half a conversion late, at k/rate beyond the phase."""
     part = _silent(mode=mode)
     device = PressureSensor(part, Streams(2), unit="ideal")
-    start = device.due - part.mode.conversion_time / 2
+    start = device.end - part.mode.conversion_time
     assert 0 <= start < 1 / part.rate
     rows = _record(device, 50, truth=lambda t: 100_000 + 2450 * t)
     ends = start + np.arange(50) / part.rate + part.mode.conversion_time
@@ -46,13 +45,24 @@ def test_a_conversion_carries_the_truth_of_its_middle(mode):
 
 def test_a_value_is_there_from_the_end_of_its_conversion_on():
     device = PressureSensor(_silent(), Streams(3), unit="ideal")
-    end = device.due + device.description.mode.conversion_time / 2
-    device.convert(90_000.0, 300.0)
-    assert np.isnan(device.latest(end - 1e-6)).all()
-    assert device.latest(end + 1e-12) == pytest.approx((90_000.0, 300.0, end))
-    device.convert(91_000.0, 300.0)
-    assert device.latest(device.due - 1 / 200 + 1e-6)[0] == pytest.approx(90_000.0)
-    assert device.latest(device.due)[0] == pytest.approx(91_000.0)
+    end = device.end
+
+    def truth(t):
+        return (90_000.0 if t < end else 91_000.0), 300.0
+
+    assert np.isnan(device.read(end - 1e-6, truth)).all()
+    assert device.read(end, truth) == pytest.approx((90_000.0, 300.0, end))
+    assert device.read(device.end - 1e-6, truth) == pytest.approx((90_000.0, 300.0, end))
+    assert device.read(device.end, truth)[0] == pytest.approx(91_000.0)
+
+
+def test_conversions_that_nobody_reads_change_nothing_of_those_that_somebody_does():
+    """Read every third one, with drift and noise: the same values as when each is read; with the filter on too."""
+    for iir in (0, 4):
+        every = _record(PressureSensor(preset("bmp390").select(iir=iir), Streams(11)), 90)
+        rarely = PressureSensor(preset("bmp390").select(iir=iir), Streams(11))
+        third = [rarely.read(t, lambda _: (100_000.0, 298.15)) for t in every[2::3, 2]]
+        assert np.array_equal(np.array(third), every[2::3])
 
 
 def test_oscillators_are_off_and_the_conversion_with_them():
@@ -64,7 +74,9 @@ def test_oscillators_are_off_and_the_conversion_with_them():
     unit = units[0]
     ends = _record(unit, 500)[:, 2]
     assert np.diff(ends) == pytest.approx(1 / (200 * (1 + unit.rate_error)), rel=1e-9)
-    window = 2 * (ends[-1] - (unit.due - 1 / (200 * (1 + unit.rate_error))))
+    middles = []
+    unit.read(unit.end, lambda t: (middles.append(t) or 100_000.0, 298.15))
+    window = 2 * (unit.end - 1 / (200 * (1 + unit.rate_error)) - middles[0])
     assert window == pytest.approx(4.82e-3 / (1 + unit.rate_error), rel=1e-6)
 
 

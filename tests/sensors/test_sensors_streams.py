@@ -57,13 +57,11 @@ def _readings(streams: Streams, with_others: bool):
     for k in range(1, 300):
         t = k * 1e-3
         for device in devices:
-            device.feel(t, 1.0, 2.0, 3.0)
-            while device.due <= t:
-                reading = device.sample()
-                if device is devices[0]:
-                    rows.append(reading)
+            readings = device.step((t, (1.0, 2.0, 3.0)))
+            if device is devices[0]:
+                rows += readings
         for head in heads:
-            polled = head.step(t - 1e-3, air, t, air) if head.due <= t else []
+            polled = head.step(t, lambda _: air) if head.due <= t else []
             if head is heads[0]:
                 rows += polled
     return np.array([row[:4] for row in rows])

@@ -226,7 +226,7 @@ class PaperFilter:
         self._total, self._static = self._channels(settings, noise)
         self._compressible = settings.model == "compressible"
         self._relation: Callable[[float, float, float], float] = (
-            airdata._airspeed_compressible if self._compressible else airdata._airspeed_bernoulli
+            airdata.compressible_airspeed if self._compressible else airdata.bernoulli_airspeed
         )
         # Airspeed over that of dry air with K = 1; the lighter moist air is faster for the same pressures.
         reference = {"pressure": 101_325.0, "temperature": 288.15, "compressibility": 1.0}

@@ -8,9 +8,14 @@ head, and turns detection into action:
                                     +--push over, no speed gained--> rearming --delay--> waiting   and height hold
 
 The end of the stroke is a short mean of f_x that stays below a level. Whether it was a launch tells the speed gained,
-the integral of f_x less its mean on the rail since detection: a knock must not open the wings. In flight the throttle
-holds the ESTIMATED airspeed (proportional-integral), the pitch command holds the height by static pressure
-(proportional; pitch and roll themselves are stabilised inside the aircraft).
+the integral of f_x less its mean on the rail since detection: a knock must not open the wings.
+
+In flight the throttle holds the ESTIMATED airspeed and the pitch command the height by static pressure; pitch and roll
+themselves are stabilised inside the aircraft:
+
+    throttle = level + K_p e + K_i integral(e dt) + K_c (pitch - level pitch),    e = set airspeed - estimate
+    pitch    = level pitch + K_h (set height - height), limited to what the airspeed allows: the limit falls from the
+               climb's to that of accelerating as e grows to a margin.
 
 Sees readings and time, never truth. Scalar, constant memory.
 """
@@ -75,11 +80,14 @@ class FlightComputerSettings:
         After a detection that was none, s.
     wing_delay, motor_delay
         From the end of the stroke to the wings, and from the wings to the motor, s.
-    climb_pitch_deg, level_pitch_deg, height, height_gain
-        Pitch command until cruise height and in level flight, degrees; cruise height above the place of launch, m;
-        pitch for a height error, rad/m.
-    throttle_level, throttle_gain, throttle_rate
-        Throttle in level flight; per m/s of error; per m of integrated error.
+    level_pitch_deg, acceleration_pitch_deg, climb_pitch_deg
+        Pitch in level cruise, while the airspeed is still to be gained, and at most in a climb, degrees.
+    speed_margin
+        Airspeed error at which climbing gives way to accelerating, m/s.
+    height, height_gain
+        Cruise height above the place of launch, m; pitch for a height error, rad/m.
+    throttle_level, throttle_gain, throttle_rate, throttle_climb
+        Throttle in level cruise; per m/s of error; per m of integrated error; per rad of pitch above level.
     """
 
     airspeed: Annotated[float, Interval(ge=10, le=100)] = 32.0
@@ -89,14 +97,17 @@ class FlightComputerSettings:
     speed_gain_min: Annotated[float, Interval(ge=0, le=100)] = 10.0
     rearm_delay: Annotated[float, Interval(ge=0, le=60)] = 1.0
     wing_delay: Annotated[float, Interval(ge=0, le=5)] = 0.10
-    motor_delay: Annotated[float, Interval(ge=0, le=5)] = 0.30
-    climb_pitch_deg: Annotated[float, Interval(ge=-10, le=30)] = 10.0
-    level_pitch_deg: Annotated[float, Interval(ge=-10, le=15)] = 1.0
-    height: Annotated[float, Interval(ge=5, le=3000)] = 40.0
-    height_gain: Annotated[float, Interval(ge=0, le=0.1)] = 0.01
-    throttle_level: Annotated[float, Interval(ge=0, le=1)] = 0.5
-    throttle_gain: Annotated[float, Interval(ge=0, le=1)] = 0.08
-    throttle_rate: Annotated[float, Interval(ge=0, le=1)] = 0.02
+    motor_delay: Annotated[float, Interval(ge=0, le=5)] = 0.25
+    level_pitch_deg: Annotated[float, Interval(ge=-10, le=15)] = 0.0
+    acceleration_pitch_deg: Annotated[float, Interval(ge=-10, le=30)] = 3.0
+    climb_pitch_deg: Annotated[float, Interval(ge=-10, le=30)] = 3.0
+    speed_margin: Annotated[float, Interval(ge=0.1, le=50)] = 3.0
+    height: Annotated[float, Interval(ge=5, le=3000)] = 15.0
+    height_gain: Annotated[float, Interval(ge=0, le=0.1)] = 0.006
+    throttle_level: Annotated[float, Interval(ge=0, le=1)] = 0.6
+    throttle_gain: Annotated[float, Interval(ge=0, le=1)] = 0.25
+    throttle_rate: Annotated[float, Interval(ge=0, le=1)] = 0.05
+    throttle_climb: Annotated[float, Interval(ge=0, le=10)] = 2.5
 
 
 class FlightComputer:
@@ -128,7 +139,7 @@ class FlightComputer:
         self.detector = detector
         self.estimator = estimator
         self.state = "waiting"
-        self.commands: Commands = (0.0, 0.0, radians(settings.climb_pitch_deg), 0.0, 0.0)
+        self.commands: Commands = (0.0, 0.0, radians(settings.acceleration_pitch_deg), 0.0, 0.0)
         self.events: list[dict[str, Any]] = []
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
@@ -146,13 +157,15 @@ class FlightComputer:
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force, m/s^2, body axes."""
         state = self.state
+        if state == "flying":
+            return
         if state == "waiting":
             self._average_rail(t, fx)
             if self.detector.step(t, fx, fy, fz):
                 self._detected(t)
         elif state == "stroke":
             self._follow_stroke(t, fx)
-        elif state != "flying" and t >= self._next_action:
+        elif t >= self._next_action:
             self._act(t)
 
     def air_data(
@@ -234,27 +247,36 @@ class FlightComputer:
     # -- cruise ------------------------------------------------------------------------------------------------------
 
     def _hold(self, estimate: Estimate, temperature: float) -> None:
-        """Airspeed by throttle, height by pitch. Without a valid estimate the throttle stays as it is."""
-        s = self.settings
+        """Airspeed by throttle, height by pitch. Without a valid estimate both stay as they are."""
         t, airspeed, _, _, _, p_static, valid = estimate
         dt = min(max(t - self._last_estimate, 0.0), 10 * LONGEST_STEP)
         self._last_estimate = t
-        throttle = self.commands[1]
-        if valid:
-            error = s.airspeed - airspeed
-            wanted = self._throttle_integral + s.throttle_gain * error
-            throttle = min(max(wanted, 0.0), 1.0)
-            if throttle == wanted or (wanted > 1.0) == (error < 0.0):  # do not wind up against a stop
-                self._throttle_integral += s.throttle_rate * error * dt
-        pitch = self.commands[2]
-        if self._reference_pressure is not None and isfinite(temperature) and p_static > 0.0:
-            height = airdata.pressure_height(
-                static=p_static, reference=self._reference_pressure, temperature=temperature
-            )
-            level, climb = radians(s.level_pitch_deg), radians(s.climb_pitch_deg)
-            pitch = level + s.height_gain * (s.height - height)
-            pitch = min(max(pitch, 2.0 * level - climb), climb)
-        self._command(throttle=throttle, pitch=pitch)
+        if not valid or self._reference_pressure is None or not isfinite(temperature):
+            return
+        error = self.settings.airspeed - airspeed
+        height = airdata.hypsometric_height(p_static, self._reference_pressure, temperature)
+        pitch = self._pitch(error, height)
+        self._command(throttle=self._throttle(error, pitch, dt), pitch=pitch)
+
+    def _pitch(self, error: float, height: float) -> float:
+        """Pitch command, rad, for an airspeed error, m/s, at a height, m."""
+        s = self.settings
+        steepest = s.climb_pitch_deg + (s.acceleration_pitch_deg - s.climb_pitch_deg) * min(
+            max(error / s.speed_margin, 0.0), 1.0
+        )
+        level = radians(s.level_pitch_deg)
+        pitch = level + s.height_gain * (s.height - height)
+        return min(max(pitch, 2.0 * level - radians(s.climb_pitch_deg)), radians(steepest))
+
+    def _throttle(self, error: float, pitch: float, dt: float) -> float:
+        """Throttle, 0 … 1, for an airspeed error, m/s, and a pitch command, rad."""
+        s = self.settings
+        steady = self._throttle_integral + s.throttle_climb * (pitch - radians(s.level_pitch_deg))
+        wanted = steady + s.throttle_gain * error
+        throttle = min(max(wanted, 0.0), 1.0)
+        if throttle == wanted:  # against a stop the integral would only wind up
+            self._throttle_integral += s.throttle_rate * error * dt
+        return throttle
 
     def _command(
         self,

@@ -78,7 +78,7 @@ _RAW = {
 
 _INDEX = {name: i for i, name in enumerate(_RAW)}
 _ALTITUDE, _WING = _INDEX["altitude"], _INDEX["wing"]
-_AIR = itemgetter(_INDEX["p_static"], _INDEX["mach"], _INDEX["temperature"])
+_AIR, _AIR_OFFSET = struct.Struct("3d"), 8 * _INDEX["mach"]  # mach, p_static, temperature stand together in _RAW
 _MOTION = itemgetter(*(_INDEX[n] for n in ("north", "east", "altitude", "vn", "ve", "vd")))
 _ATTITUDE = itemgetter(*(_INDEX[n] for n in ("roll", "pitch", "heading")))
 _RATES = itemgetter(*(_INDEX[n] for n in ("p", "q", "r")))
@@ -124,8 +124,8 @@ class JsbsimPlant:
     ----------
     k, t
         Steps since the start of the record, and their time, s.
-    row, before
-        Raw values after this step and the one before, in JSBSim's units.
+    row
+        Raw values after this step, in JSBSim's units.
     on_rail
         Whether a shoe is still on the rail.
     aloft
@@ -148,7 +148,6 @@ class JsbsimPlant:
         self._run: Callable[[], bool] = self._fdm.run
         self._nodes = [self._node(name) for name, _ in _RAW.values()]
         self._commands = [self._node(name) for name in _COMMANDS]
-        self._commanded: Commands = (0.0, 0.0, 0.0, 0.0, 0.0)
         self._eye = tuple(self._value(f"metrics/eyepoint-{axis}-in") for axis in "xyz")
         self._forces = [
             (self._node(f"external_reactions/{name}"), unit)
@@ -177,7 +176,6 @@ class JsbsimPlant:
         self._buffer = bytearray((round(settings.duration * settings.step_rate) + 2) * _ROW.size)
         self._size = 0
         self._ground = settings.environment.ground_elevation / FT
-        self.before: Row = self.row
         self._offsets = (self._lever(self.row),) * 3  # of the sensor from the centre of gravity, newest first
         self._still = True
         self._record(self.row)
@@ -195,6 +193,8 @@ class JsbsimPlant:
             raise ValueError(f"aircraft {aircraft.model!r}: JSBSim cannot load {folder / (folder.name + '.xml')}")
         fdm.disable_output()
         fdm.set_dt(self.dt)
+        for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
+            fdm.set_property_value(f"simulation/integrator/{name}/rotational", 3.0)
         return fdm
 
     def _node(self, name: str) -> FGPropertyNode:
@@ -269,17 +269,14 @@ class JsbsimPlant:
 
     def command(self, commands: Commands) -> None:
         """Set the onboard computer's commands; they act from the next step on."""
-        for node, new, old in zip(self._commands, commands, self._commanded, strict=True):
-            if new != old:
-                node.set_double_value(new)
-        self._commanded = commands
+        for node, value in zip(self._commands, commands, strict=True):
+            node.set_double_value(value)
 
     def step(self) -> None:
         """Advance by one step and record it."""
         if self._attended:
             self._attend()
         self._run()
-        self.before = self.row
         self.k += 1
         self.t = self.k / self.settings.step_rate
         self.row = row = self._read()
@@ -397,14 +394,15 @@ class JsbsimPlant:
         )
 
     def air(self, time: float) -> Vector:
-        """Total pressure, static pressure, Pa, and temperature, K, at a `time` within the last step, linear in it."""
-        past = (self.t - time) / self.dt
-        static, mach, temperature = _AIR(self.row)
-        static0, mach0, temperature0 = _AIR(self.before)
-        static = (static + past * (static0 - static)) * PSF
-        mach += past * (mach0 - mach)
-        temperature = (temperature + past * (temperature0 - temperature)) * RANKINE
-        return airdata._total_pressure(static, mach), static, temperature
+        """Total pressure, static pressure, Pa, and temperature, K, at any recorded `time`, linear within a step."""
+        k = min(int(time * self.settings.step_rate), self.k - 1)
+        share = time * self.settings.step_rate - k
+        at = k * _ROW.size + _AIR_OFFSET
+        mach0, static0, temperature0 = _AIR.unpack_from(self._buffer, at)
+        mach, static, temperature = _AIR.unpack_from(self._buffer, at + _ROW.size)
+        static = (static0 + share * (static - static0)) * PSF
+        total = airdata.isentropic_total(static, mach0 + share * (mach - mach0))
+        return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
 
     @property
     def finite(self) -> bool:
