@@ -8,6 +8,7 @@ import matplotlib
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.axes import Axes
 from PIL import Image
 
 from uavsim.flight import UNITS, Flight, load
@@ -133,6 +134,18 @@ def test_the_made_up_flights_are_what_they_stand_for(flight: Flight) -> None:
     assert made_up(end=RELEASE + 0.2).score["flight"]["rail_exit_time"] is None
 
 
+def test_without_truth_the_launch_is_the_detection_that_the_stroke_confirmed(flight: Flight) -> None:
+    knock = [{"t": 1.5, "event": "launch_detected"}, {"t": 1.6, "event": "not_a_launch"}]
+    recorded = without(flight, "truth")
+    detected = flight.score["launch"]["detected_time"]
+    events = [*knock, *recorded.events, {"t": detected + 0.4, "event": "stroke_end"}]
+    record = plots._Record(Flight(recorded.scenario, recorded.tables, events, recorded.score))
+    assert record.start == detected
+    assert record.launch == pytest.approx((detected - 0.2, detected + 0.8))
+    assert [mark.label for mark in record.milestones] == ["detected", "stroke end noticed", "wings commanded"]
+    assert [mark.t for mark in record.named("false detection")] == [1.5]
+
+
 def test_equal_flights_give_equal_files_and_nothing_is_left_behind(flight: Flight, tmp_path: Path) -> None:
     before = dict(matplotlib.rcParams)
     for name in ("a", "b"):
@@ -183,16 +196,20 @@ def test_labels_of_marks_never_cover_each_other_nor_cross_a_line() -> None:
 def test_height_is_exaggerated_by_as_much_as_is_said(flight: Flight) -> None:
     figure = plots._trajectory(plots._Record(flight))
     assert figure is not None
-    stated = []
     for axes in figure.axes[:2]:
         words = axes.get_title(loc="right")
         factor = 1.0 if words == "true aspect" else float(words.split()[-1].removesuffix("×"))
         box = axes.get_window_extent()
         (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
         assert (box.height / (top - bottom)) / (box.width / (right - left)) == pytest.approx(factor, rel=1e-6)
-        stated.append(factor)
-        assert bottom < 0.0
-    assert stated[0] >= 1.0
+        shown = [y for x, y in zip(*path(axes), strict=True) if left <= x <= right]
+        assert bottom < 0.0 < max(shown) < top
+
+
+def path(axes: Axes) -> tuple[list[float], list[float]]:
+    """Return the points of the trajectory."""
+    pairs = [line.get_data() for line in axes.lines if line.get_label() in ("rail", *plots.PHASES)]
+    return [float(x) for pair in pairs for x in pair[0]], [float(y) for pair in pairs for y in pair[1]]
 
 
 def test_readings_and_truth_are_drawn_where_they_are(flight: Flight) -> None:

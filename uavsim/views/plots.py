@@ -118,9 +118,13 @@ class _Record:
 
     @cached_property
     def detected(self) -> float | None:
-        """The detection that counts, s."""
+        """The detection that counts, s: in a recording without truth the one that the stroke's end confirmed."""
         value: float | None = self.scored("launch", "detected_time")
-        return self.event("launch_detected") if value is None and self.release is None else value
+        if value is not None or self.release is not None:
+            return value
+        end = _first(self.event("stroke_end"), np.inf)
+        times = [float(e["t"]) for e in self.flight.events if e["event"] == "launch_detected"]
+        return max((t for t in times if t <= end), default=None) if np.isfinite(end) else _first(*times)
 
     @cached_property
     def start(self) -> float | None:
@@ -146,7 +150,8 @@ class _Record:
         if self.start is None:
             return None
         first = _first(self.release, self.start)
-        last = first + WITHOUT_EXIT if self.rail_exit is None else self.rail_exit + AFTER_EXIT
+        left = _first(self.rail_exit, None if self.release is not None else self.event("stroke_end"))
+        last = first + WITHOUT_EXIT if left is None else left + AFTER_EXIT
         return max(first - BEFORE, self.span[0]), min(last, self.span[1])
 
     @cached_property
@@ -189,6 +194,12 @@ class _Record:
     def named(self, *labels: str) -> list[Mark]:
         """Pick marks by their labels."""
         return [mark for mark in self.marks if mark.label in labels]
+
+    @cached_property
+    def milestones(self) -> list[Mark]:
+        """The few marks that a whole flight has room for; where truth is missing, what was noticed on board."""
+        pairs = (("true launch", "detected"), ("rail exit", "stroke end noticed"), ("wing out", "wings commanded"))
+        return [mark for pair in pairs for mark in (self.named(pair[0]) or self.named(pair[1]))[:1]]
 
     @cached_property
     def title(self) -> str:
@@ -546,7 +557,7 @@ def _pressure(record: _Record) -> "Figure | None":
         _cover(column, record)
         _tint(column, record)
         column[-1].set_xlabel("time, s", fontsize=TEXT)
-    flag_all(axes, [record.named("true launch", "rail exit", "wing out")] * len(width))
+    flag_all(axes, [record.milestones] * len(width))
     legend(axes[0][-1], *axes[0])
     if record.has("truth"):
         axes[1][1].text(
@@ -690,7 +701,7 @@ def _airspeed(record: _Record) -> "Figure | None":
     for row, name in zip(axes, ("airspeed, m/s", "error, m/s"), strict=False):
         row[0].set_ylabel(name, fontsize=TEXT)
         legend(row[-1], row[0])
-    flag_all(axes, [record.named("true launch", "rail exit", "wing out"), record.marks][: len(columns)])
+    flag_all(axes, [record.milestones, record.marks][: len(columns)])
     return figure
 
 
@@ -836,6 +847,8 @@ def _attitude(axes: "Axes", record: _Record, stretch: tuple[float, float]) -> No
     for name, angle, colour in (("pitch", pitch, BLACK), ("roll", roll, ORANGE), ("angle of attack", alpha, BLUE)):
         axes.plot(*thin(t, np.degrees(angle)), color=colour, linewidth=1.1, label=name)
     axes.axhline(0.0, color=GREY, linewidth=0.6)
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -1.0), max(high, 1.0))
 
 
 def _controls(axes: "Axes", record: _Record, stretch: tuple[float, float]) -> None:
