@@ -20,15 +20,10 @@ from collections.abc import Callable, Generator
 from math import expm1, pi
 
 from sensors.clock import Clock
-from sensors.description import AccelerometerDescription, Triple, Unit, draw_error
+from sensors.description import ROUND, AccelerometerDescription, Triple, Unit, draw_error
 from sensors.noise import constant, gauss_markov, random_walk, rows, white
 from sensors.streams import Streams
 from sensors.vibration import Vibration
-
-# x + ROUND - ROUND is x rounded to a whole number, ties to even, for |x| < 2^51, and NaN for NaN: the sum has no bits
-# left below 1 (IEEE 754 double). It costs half of what round() does.
-ROUND = 1.5 * 2.0**52
-
 
 Reading = tuple[float, float, float, float]
 """t, s, and specific force x, y, z, m/s²."""

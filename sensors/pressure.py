@@ -18,7 +18,7 @@ from collections.abc import Callable
 from math import nan
 
 from sensors.clock import Clock
-from sensors.description import PressureDescription, Unit, draw_error
+from sensors.description import ROUND, PressureDescription, Unit, draw_error
 from sensors.noise import constant, gauss_markov, random_walk, values, white
 from sensors.streams import Streams
 
@@ -76,8 +76,9 @@ class PressureSensor:
     """
 
     __slots__ = (
-        "_count", "_error", "_filters", "_first_end", "_half", "_rate", "_ready", "_temperature_error", "description",
-        "end", "offset", "rate_error", "scale_error", "temperature_offset",
+        "_count", "_error", "_filters", "_first_end", "_half", "_high", "_low", "_rate", "_ready", "_reference", "_step",
+        "_temperature_error", "_temperature_step", "description", "end", "offset", "rate_error", "scale_error",
+        "temperature_offset",
     )  # fmt: skip
 
     def __init__(
@@ -114,6 +115,8 @@ class PressureSensor:
         self._temperature_error = values(
             (constant(self.temperature_offset), white(streams(f"{name}.temperature.white"), d.temperature_white_sd))
         )
+        self._low, self._high = d.range
+        self._reference, self._step, self._temperature_step = d.reference_pressure, d.resolution, d.temperature_resolution
         off = d.iir_weight == 1.0
         self._filters = None if off else (DigitalFilter(d.iir_weight), DigitalFilter(d.iir_weight))
         self._ready: Conversion = (nan, nan, nan)
@@ -141,22 +144,15 @@ class PressureSensor:
             if self.end <= t and self._filters is None:
                 continue  # nobody will see it: the next one is finished too
             pressure, temperature = truth(end - self._half)
-            self._ready = self._convert(pressure, temperature, error, temperature_error, end)
+            pressure += self.scale_error * (pressure - self._reference) + error
+            pressure = quantise(min(max(pressure, self._low), self._high), self._step)
+            temperature = quantise(temperature + temperature_error, self._temperature_step)
+            if self._filters is not None:
+                pressure, temperature = self._filters[0].step(pressure), self._filters[1].step(temperature)
+            self._ready = (pressure, temperature, end)
         return self._ready
 
-    def _convert(
-        self, pressure: float, temperature: float, error: float, temperature_error: float, end: float
-    ) -> Conversion:
-        d = self.description
-        low, high = d.range
-        p = pressure + self.scale_error * (pressure - d.reference_pressure) + error
-        p = _quantise(min(max(p, low), high), d.mode.resolution)
-        kelvin = _quantise(temperature + temperature_error, d.temperature_resolution)
-        if self._filters is not None:
-            p, kelvin = self._filters[0].step(p), self._filters[1].step(kelvin)
-        return p, kelvin, end
 
-
-def _quantise(value: float, step: float) -> float:
+def quantise(value: float, step: float) -> float:
     """Return `value` rounded to a multiple of `step`; NaN stays NaN."""
-    return round(value / step) * step if value == value else value  # noqa: PLR0124  # not NaN
+    return (value / step + ROUND - ROUND) * step

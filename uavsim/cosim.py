@@ -172,12 +172,12 @@ class Cosimulation:
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
         self.ended = ""
-        self.accelerometer.step((0.0, self.plant.specific_force()))
+        self.accelerometer.step((0.0, self.plant.force))
 
     def advance(self, steps: int) -> None:
         """Fly up to `steps` plant steps; `ended` tells why it stopped early."""
         plant, onboard, head, accelerometer = self.plant, self.onboard, self.head, self.accelerometer
-        step, felt, feel = plant.step, plant.specific_force, accelerometer.step
+        step, feel = plant.step, accelerometer.step
         keep, take, computer = self.readings.extend, onboard.accelerometer, onboard.computer
         on_rail = plant.on_rail
         for _ in range(min(steps, self.steps - plant.k)):
@@ -187,7 +187,7 @@ class Cosimulation:
             if not plant.aloft:
                 self.ended = "crashed" if plant.finite else "diverged"
                 return
-            readings = feel((t, felt()))
+            readings = feel((t, plant.force))
             air = head.step(t, plant.air) if head.due <= t else ()
             for reading in readings:
                 if air and air[0][0] < reading[0]:

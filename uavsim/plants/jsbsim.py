@@ -8,7 +8,7 @@ The only module that imports jsbsim, and the only one that knows pounds, feet an
 * At the accelerometer, r from the centre of gravity, is felt besides  w' x r + w x (w x r) + 2 w x r' + r''. The last
   two act while the wing opens and the centre of gravity moves; they are backward differences of second order.
 * Nodes are looked up once. Each step's raw values are packed into one buffer; SI and derived columns are computed for
-  the whole flight at the end (`truth`), and in the loop only for what a sensor reads (`specific_force`, `air`).
+  the whole flight at the end (`truth`), and in the loop only for what a sensor reads (`force`, `air`).
 * Writing a property that does not exist would silently create it, so every name is checked against the catalogue.
 """
 
@@ -84,7 +84,8 @@ _ATTITUDE = itemgetter(*(_INDEX[n] for n in ("roll", "pitch", "heading")))
 _RATES = itemgetter(*(_INDEX[n] for n in ("p", "q", "r")))
 _CG = itemgetter(*(_INDEX[n] for n in ("cg_x", "cg_y", "cg_z")))
 _FELT = slice(_INDEX["force_x"], _INDEX["r_dot"] + 1)  # what the specific force is made of stands together in _RAW
-_ROW = struct.Struct(f"{len(_RAW) + 1}d")  # and the catapult's force, N
+_OWN = ("catapult_force", "fx", "fy", "fz")  # N and m/s^2: what is recorded beside them, in SI already
+_ROW = struct.Struct(f"{len(_RAW) + len(_OWN)}d")
 
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
 Commands = tuple[float, float, float, float, float]
@@ -126,6 +127,8 @@ class JsbsimPlant:
         Steps since the start of the record, and their time, s.
     row
         Raw values after this step, in JSBSim's units.
+    force
+        Specific force at the accelerometer after this step, body axes, m/s^2.
     on_rail
         Whether a shoe is still on the rail.
     aloft
@@ -296,7 +299,8 @@ class JsbsimPlant:
         return tuple(map(FGPropertyNode.get_double_value, self._nodes))
 
     def _record(self, row: Row) -> None:
-        _ROW.pack_into(self._buffer, self._size, *row, self.rail.push)
+        self.force = self._felt(row)
+        _ROW.pack_into(self._buffer, self._size, *row, self.rail.push, *self.force)
         self._size += _ROW.size
 
     def _attend(self) -> None:
@@ -360,9 +364,9 @@ class JsbsimPlant:
         eye = self._eye
         return ((x - eye[0]) * INCH, (eye[1] - y) * INCH, (z - eye[2]) * INCH)
 
-    def specific_force(self) -> Vector:
-        """Specific force at the accelerometer at the end of this step, body axes, m/s^2."""
-        fx, fy, fz, mass, cx, cy, cz, p, q, r, p_dot, q_dot, r_dot = self.row[_FELT]
+    def _felt(self, row: Row) -> Vector:
+        """Specific force at the accelerometer, body axes, m/s^2."""
+        fx, fy, fz, mass, cx, cy, cz, p, q, r, p_dot, q_dot, r_dot = row[_FELT]
         eye = self._eye
         x, y, z = (cx - eye[0]) * INCH, (eye[1] - cy) * INCH, (cz - eye[2]) * INCH
         scale = FT / mass
@@ -413,15 +417,14 @@ class JsbsimPlant:
 
     def truth(self) -> dict[str, np.ndarray]:
         """Columns of the truth (`uavsim.truth.UNITS`), SI, one value a step."""
-        table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(_RAW) + 1)
+        table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(_RAW) + len(_OWN))
         raw = {name: table[:, i] * factor for i, (name, (_, factor)) in enumerate(_RAW.items())}
         raw["t"] = np.arange(len(table)) / self.settings.step_rate
-        raw["catapult_force"] = table[:, -1]
+        raw |= {name: table[:, len(_RAW) + i] for i, name in enumerate(_OWN)}
         raw["north"] = raw["north"] - self._datum[_INDEX["north"]] * FT
         raw["east"] = raw["east"] - self._datum[_INDEX["east"]] * FT
         raw["rail_s"] = self._travel(raw)
         raw["p_total"] = np.asarray(airdata.total_pressure(static=raw["p_static"], mach=raw["mach"]))
-        raw["fx"], raw["fy"], raw["fz"] = self._felt_over_time(raw)
         return raw
 
     def _travel(self, c: dict[str, np.ndarray]) -> np.ndarray:
@@ -433,21 +436,10 @@ class JsbsimPlant:
             travel[left[0] :] = travel[left[0]]
         return travel
 
-    def _felt_over_time(self, c: dict[str, np.ndarray]) -> np.ndarray:
-        """`specific_force` for all rows at once: shape (3, n), m/s^2."""
-        force = np.stack([c["force_x"], c["force_y"], c["force_z"]], axis=1) / c["mass"][:, None]
-        rates = np.stack([c["p"], c["q"], c["r"]], axis=1)
-        turning = np.stack([c["p_dot"], c["q_dot"], c["r_dot"]], axis=1)
-        eye = np.array(self._eye) * INCH
-        offset = np.stack([c["cg_x"] - eye[0], eye[1] - c["cg_y"], c["cg_z"] - eye[2]], axis=1)
-        earlier = np.concatenate([np.repeat(offset[:1], 3, axis=0), offset])
-        moving, accelerating = _derivatives(offset, earlier[2:-1], earlier[1:-2], earlier[:-3], self.dt)
-        felt = force + np.cross(turning, offset) + np.cross(rates, np.cross(rates, offset))
-        felt += 2.0 * np.cross(rates, moving) + accelerating
-        return felt.T
 
-
-def _derivatives(now: Any, before: Any, two_before: Any, three_before: Any, dt: float) -> tuple[Any, Any]:
+def _derivatives(
+    now: float, before: float, two_before: float, three_before: float, dt: float
+) -> tuple[float, float]:
     """First and second derivative at the newest of four equidistant values, backward differences of second order."""
     first = (3.0 * now - 4.0 * before + two_before) / (2.0 * dt)
     second = (2.0 * now - 5.0 * before + 4.0 * two_before - three_before) / dt**2
