@@ -18,16 +18,33 @@ DONE, UNEXPECTED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    help="Fly a folding-wing UAV from catapult to cruise in JSBSim, with its launch detector and airspeed estimator in "
-    "the loop, scored against the truth.\n\nExample: uavsim fly catapult --seed 7",
 )
+
+_UsageError = typer.BadParameter.__mro__[2]  # click's ClickException, wherever this typer keeps its click
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder to write; made with its parents.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace a folder that is not empty.")]
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw no plots.")]
+
+
+@app.callback(invoke_without_command=True)
+def uavsim(
+    context: typer.Context, version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False
+) -> None:
+    """Fly a folding-wing UAV from catapult to cruise in JSBSim.
+
+    Launch detector and airspeed estimator are in the loop, everything is scored against the truth.
+
+    Example: uavsim fly catapult --seed 7
+    """
+    if version:
+        from uavsim import __version__  # noqa: PLC0415 (each command loads only what it needs)
+
+        typer.echo(f"uavsim {__version__}")
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
 
 
 @app.command()
@@ -229,17 +246,12 @@ def _leave(as_expected: bool) -> None:
 
 def main() -> None:
     """Run the command line; every error of the user's is one line on standard error and status 2."""
-    import click  # noqa: PLC0415
-
     try:
         status = app(standalone_mode=False)
-    except click.exceptions.NoArgsIsHelpError as error:
-        typer.echo(error.format_message())
-        status = WRONG_INPUT
-    except click.ClickException as error:
-        status = _complain(error.format_message())
-    except (click.Abort, KeyboardInterrupt):
+    except (typer.Abort, KeyboardInterrupt):
         status = INTERRUPTED
+    except _UsageError as error:
+        status = _complain(error.format_message())  # type: ignore[attr-defined]  # the class is known at run time only
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = DONE
