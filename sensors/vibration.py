@@ -1,10 +1,12 @@
 """Vibration at the accelerometer: a specific force beside the truth, body axes, m/s².
 
-    v(t) = rms(phase) g ξ(t) + e_x c P e^{-τ/T} sin(2π f_r τ),   τ = t - t_release ≥ 0
+    v(t) = rms(phase) g ξ(t) + e_x c P a(τ) sin(2π f_r τ),   τ = t - t_release ≥ 0
+    a(τ) = τ/t_rise while the push rises, e^{-(τ - t_rise)/T} afterwards
 
 ξ is noise of unit rms with a flat spectrum in a band, independent on each axis; its rms is that of the phase: waiting
-on the rail, stroke, flight. The second term is the airframe ringing along body x once the latch lets go, with the
-fraction c of the plateau P of the push. Vibration is part of what is felt: it goes through the bandwidth and can alias.
+on the rail, stroke, flight. The second term is the airframe ringing along body x: the push excites it as it rises to
+its plateau P, to the fraction c of it, and it decays from there. Vibration is part of what is felt: it goes through
+the bandwidth and can alias.
 """
 
 from collections.abc import Callable, Iterator
@@ -40,6 +42,8 @@ class Vibration:
         When the latch lets go, s; infinity if it never does.
     plateau : float
         Specific force of the push, m/s².
+    rise : float
+        Time in which the push rises to it, s.
     scale : float
         Factor on everything.
 
@@ -66,6 +70,7 @@ class Vibration:
         dt: float,
         release_time: float,
         plateau: float,
+        rise: float = 0.0,
         scale: float = 1.0,
     ) -> None:
         unit = band_limited(streams("vibration"), PERIOD, dt, settings.band_hz, axes=3) * (scale * G0)
@@ -77,8 +82,11 @@ class Vibration:
             self.step = waiting.__next__
             return
         released = ceil(release_time / dt)
-        tau = np.arange(released, released + ceil(RING_DECAYS * settings.ring_decay / dt)) * dt - release_time
-        ring = np.exp(-tau / settings.ring_decay) * np.sin(2.0 * np.pi * settings.ring_hz * tau)
+        lasting = rise + RING_DECAYS * settings.ring_decay
+        tau = np.arange(released, released + ceil(lasting / dt)) * dt - release_time
+        grown = np.minimum(tau / rise, 1.0) if rise > 0.0 else np.ones_like(tau)
+        envelope = grown * np.exp(-np.maximum(tau - rise, 0.0) / settings.ring_decay)
+        ring = envelope * np.sin(2.0 * np.pi * settings.ring_hz * tau)
         stroke = unit * settings.stroke_rms_g
         ringing = np.take(stroke, np.arange(released, released + tau.size), axis=0, mode="wrap")
         ringing[:, 0] += ring * (scale * settings.ring_fraction * plateau)

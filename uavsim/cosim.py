@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
+from uavsim import __version__
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import Detector, Estimate, FlightComputer
@@ -154,6 +155,7 @@ class Cosimulation:
             dt=1.0 / STEP_RATE,
             release_time=release,
             plateau=scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor,
+            rise=scenario.launcher.rise,
             scale=scenario.accelerometer.vibration_scale,
         )
         self.accelerometer = Accelerometer(
@@ -354,4 +356,4 @@ def _flight(simulation: Cosimulation) -> Flight:
 
 
 def _versions() -> dict[str, str]:
-    return {name: version(name) for name in ("uavsim", "jsbsim", "numpy", "scipy", "filterpy")}
+    return {"uavsim": __version__, **{name: version(name) for name in ("jsbsim", "numpy", "scipy", "filterpy")}}

@@ -39,6 +39,16 @@ def test_the_same_noise_goes_on_through_the_phases():
     assert rows == pytest.approx(_take(_make(settings, release_time=np.inf), 1000), abs=1e-14)
 
 
+def test_ring_grows_with_the_push_and_decays_from_its_plateau():
+    settings = VibrationSettings(waiting_rms_g=0.0, stroke_rms_g=0.0, ring_hz=120.0, ring_fraction=0.3, ring_decay=0.05)
+    rows = _take(_make(settings, release_time=0.25, rise=0.03), 800)
+    tau = np.arange(800) * DT - 0.25
+    envelope = np.where(tau < 0.03, tau / 0.03, np.exp(-(tau - 0.03) / 0.05))
+    expected = np.where(tau >= 0, 0.3 * 80.0 * envelope * np.sin(2 * np.pi * 120.0 * tau), 0.0)
+    assert rows[:, 0] == pytest.approx(expected, abs=1e-9)
+    assert np.abs(rows[:, 0]).max() == pytest.approx(0.3 * 80.0, rel=0.05)
+
+
 def test_ring_is_a_decaying_sine_along_x_from_release_on():
     settings = VibrationSettings(waiting_rms_g=0.0, stroke_rms_g=0.0, ring_hz=120.0, ring_fraction=0.3, ring_decay=0.05)
     release = 0.2503  # between two steps
