@@ -14,8 +14,8 @@ In flight the throttle holds the ESTIMATED airspeed and the pitch command the he
 themselves are stabilised inside the aircraft:
 
     throttle = level + K_p e + K_i integral(e dt) + K_c (pitch - level pitch),    e = set airspeed - estimate
-    pitch    = level pitch + K_h (set height - height), limited to what the airspeed allows: the limit falls from the
-               climb's to that of accelerating as e grows to a margin.
+    pitch    = level pitch + K_h (set height - height), at most that of the climb; while more airspeed than a margin is
+               still to be gained, that of the launch, and between the two in proportion.
 
 Sees readings and time, never truth. Scalar, constant memory.
 """
@@ -80,10 +80,10 @@ class FlightComputerSettings:
         After a detection that was none, s.
     wing_delay, motor_delay
         From the end of the stroke to the wings, and from the wings to the motor, s.
-    level_pitch_deg, acceleration_pitch_deg, climb_pitch_deg
-        Pitch in level cruise, while the airspeed is still to be gained, and at most in a climb, degrees.
+    level_pitch_deg, launch_pitch_deg, climb_pitch_deg
+        Pitch in level cruise, from the rail until the airspeed is gained, and at most in a climb, degrees.
     speed_margin
-        Airspeed error at which climbing gives way to accelerating, m/s.
+        Airspeed error from which on the launch's pitch is held, m/s.
     height, height_gain
         Cruise height above the place of launch, m; pitch for a height error, rad/m.
     throttle_level, throttle_gain, throttle_rate, throttle_climb
@@ -99,7 +99,7 @@ class FlightComputerSettings:
     wing_delay: Annotated[float, Interval(ge=0, le=5)] = 0.10
     motor_delay: Annotated[float, Interval(ge=0, le=5)] = 0.25
     level_pitch_deg: Annotated[float, Interval(ge=-10, le=15)] = 0.0
-    acceleration_pitch_deg: Annotated[float, Interval(ge=-10, le=30)] = 3.0
+    launch_pitch_deg: Annotated[float, Interval(ge=-10, le=30)] = 5.0
     climb_pitch_deg: Annotated[float, Interval(ge=-10, le=30)] = 3.0
     speed_margin: Annotated[float, Interval(ge=0.1, le=50)] = 3.0
     height: Annotated[float, Interval(ge=5, le=3000)] = 15.0
@@ -139,7 +139,7 @@ class FlightComputer:
         self.detector = detector
         self.estimator = estimator
         self.state = "waiting"
-        self.commands: Commands = (0.0, 0.0, radians(settings.acceleration_pitch_deg), 0.0, 0.0)
+        self.commands: Commands = (0.0, 0.0, radians(settings.launch_pitch_deg), 0.0, 0.0)
         self.events: list[dict[str, Any]] = []
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
@@ -261,7 +261,7 @@ class FlightComputer:
     def _pitch(self, error: float, height: float) -> float:
         """Pitch command, rad, for an airspeed error, m/s, at a height, m."""
         s = self.settings
-        steepest = s.climb_pitch_deg + (s.acceleration_pitch_deg - s.climb_pitch_deg) * min(
+        steepest = s.climb_pitch_deg + (s.launch_pitch_deg - s.climb_pitch_deg) * min(
             max(error / s.speed_margin, 0.0), 1.0
         )
         level = radians(s.level_pitch_deg)
