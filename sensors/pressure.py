@@ -76,9 +76,9 @@ class PressureSensor:
     """
 
     __slots__ = (
-        "_count", "_error", "_filters", "_first_end", "_half", "_high", "_low", "_rate", "_ready", "_reference", "_step",
-        "_temperature_error", "_temperature_step", "description", "end", "offset", "rate_error", "scale_error",
-        "temperature_offset",
+        "_count", "_error", "_filters", "_first_end", "_half", "_high", "_low", "_rate", "_ready", "_reference",
+        "_step", "_temperature_error", "_temperature_step", "description", "end", "offset", "rate_error",
+        "scale_error", "temperature_offset",
     )  # fmt: skip
 
     def __init__(
@@ -116,7 +116,8 @@ class PressureSensor:
             (constant(self.temperature_offset), white(streams(f"{name}.temperature.white"), d.temperature_white_sd))
         )
         self._low, self._high = d.range
-        self._reference, self._step, self._temperature_step = d.reference_pressure, d.resolution, d.temperature_resolution
+        self._reference = d.reference_pressure
+        self._step, self._temperature_step = d.resolution, d.temperature_resolution
         off = d.iir_weight == 1.0
         self._filters = None if off else (DigitalFilter(d.iir_weight), DigitalFilter(d.iir_weight))
         self._ready: Conversion = (nan, nan, nan)

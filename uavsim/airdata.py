@@ -295,6 +295,7 @@ def pressure_height(*, static: Numbers, reference: Numbers | float, temperature:
 
 
 def isentropic_total(static: Any, mach: Any, xp: Any = math) -> Any:
+    """Total pressure, Pa, without checks."""
     return static + static * xp.expm1(xp.log1p(0.5 * (GAMMA - 1.0) * mach * mach) / _EXPONENT)
 
 

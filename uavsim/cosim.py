@@ -9,7 +9,7 @@ the settings of a filter.
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -19,7 +19,7 @@ from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from uavsim import __version__
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
-from uavsim.onboard.flight_computer import Detector, Estimate, FlightComputer
+from uavsim.onboard.flight_computer import Estimate, FlightComputer
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.score import Judged, score
 from uavsim.truth import STANDARD_GRAVITY
@@ -69,7 +69,7 @@ def draw(scenario: Scenario, index: int = 0) -> Draws:
 class WatchedDetector:
     """A launch detector whose state is written down at each step from a given time on."""
 
-    def __init__(self, detector: Detector, record_from: float) -> None:
+    def __init__(self, detector: launch.MultiLevelWindow, record_from: float) -> None:
         self.detector = detector
         self.rows: list[tuple[float, int, int, int, bool, bool]] = []
         self._from = record_from
@@ -190,7 +190,7 @@ class Cosimulation:
                 self.ended = "crashed" if plant.finite else "diverged"
                 return
             readings = feel((t, plant.force))
-            air = head.step(t, plant.air) if head.due <= t else ()
+            air = head.step(t, plant.air) if head.due <= t else []
             for reading in readings:
                 if air and air[0][0] < reading[0]:
                     air = self._take_air(air, reading[0])
@@ -206,7 +206,7 @@ class Cosimulation:
         if plant.k >= self.steps:
             self.ended = "completed" if plant.finite else "diverged"
 
-    def _take_air(self, rows: Sequence[AirReading], until: float) -> Sequence[AirReading]:
+    def _take_air(self, rows: list[AirReading], until: float) -> list[AirReading]:
         """Hand on the rows with a time stamp before `until`; return the rest."""
         while rows and rows[0][0] < until:
             self.air_readings.extend(rows[0])
@@ -220,7 +220,7 @@ class Cosimulation:
 
 
 def believed_noise(scenario: Scenario) -> airspeed.NoiseModel:
-    """What the estimator believes of the head: the numbers of the description that the simulated units are drawn from."""
+    """What the estimator believes of the head: numbers of the description that the simulated units are drawn from."""
     total, static = scenario.air_data.total.description(), scenario.air_data.static.description()
     return airspeed.NoiseModel(
         total_sd=total.noise_sd,
@@ -313,13 +313,13 @@ def replay(flight: Flight) -> Flight:
     draws = draw(scenario)
     onboard = Onboard(scenario, draws.release_time)
     readings = flight.accelerometer.to_numpy().tolist()
-    air = [tuple(row) for row in flight.air_data.to_numpy().tolist()]
+    air: list[AirReading] = [(a, b, c, d, e, f) for a, b, c, d, e, f in flight.air_data.to_numpy().tolist()]
     next_air = 0
     for row in readings:
         while next_air < len(air) and air[next_air][0] < row[0]:
             onboard.air_data(air[next_air])
             next_air += 1
-        onboard.accelerometer((row[0], row[1], row[2], row[3]))
+        onboard.accelerometer(*row)
     for reading in air[next_air:]:
         onboard.air_data(reading)
     tables = dict(flight.tables)
@@ -351,8 +351,8 @@ def _flight(simulation: Cosimulation) -> Flight:
         _versions(),
     )
     result = score(judged)
-    truth["phase"] = judged.phases()
-    return Flight(scenario, {"truth": frame("truth", truth), **tables}, onboard.computer.events, result)
+    record = frame("truth", {**truth, "phase": judged.phases()})
+    return Flight(scenario, {"truth": record, **tables}, onboard.computer.events, result)
 
 
 def _versions() -> dict[str, str]:

@@ -40,12 +40,7 @@ Commands = tuple[float, float, float, float, float]
 
 
 class Detector(Protocol):
-    """What the computer asks of a launch detector; level, count and total as far as it has them."""
-
-    level: int
-    count: int
-    total: int
-    triggered: bool
+    """What the computer asks of a launch detector."""
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
         """Take one reading; True once, on the one that makes the launch recognised."""

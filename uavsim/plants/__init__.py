@@ -1,0 +1,1 @@
+"""Where the truth comes from. Only `uavsim.plants.jsbsim` imports jsbsim."""

@@ -21,7 +21,8 @@ from operator import itemgetter
 from typing import Any
 
 import numpy as np
-from jsbsim import FGFDMExec, FGLogger, FGPropertyNode, LogLevel, set_logger
+from jsbsim import FGFDMExec, FGLogger, FGPropertyNode, set_logger
+from numpy.typing import NDArray
 
 from uavsim import airdata
 from uavsim.plants.hangar import find_aircraft
@@ -92,6 +93,7 @@ Commands = tuple[float, float, float, float, float]
 """Wing (0 folded, 1 out), throttle (0 … 1), pitch and roll, rad, stabiliser engaged (0, 1)."""
 
 Row = tuple[float, ...]
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +110,7 @@ class JsbsimSettings:
     step_rate: float = 1000.0
 
 
-class _Silence(FGLogger):  # type: ignore[misc]  # jsbsim ships no type for its base class
+class _Silence(FGLogger):
     """Keeps JSBSim's console chatter to itself; what matters comes back as exceptions and checks."""
 
     def set_level(self, level: Any) -> None: ...
@@ -203,7 +205,8 @@ class JsbsimPlant:
     def _node(self, name: str) -> FGPropertyNode:
         if name not in self._catalogue:
             raise ValueError(f"aircraft {self.settings.aircraft.model!r} lacks the property {name!r} that uavsim needs")
-        node: FGPropertyNode = self._fdm.get_property_manager().get_node(name)
+        node = self._fdm.get_property_manager().get_node(name)
+        assert node is not None, name  # it is in the catalogue
         return node
 
     def _value(self, name: str) -> float:
@@ -415,7 +418,7 @@ class JsbsimPlant:
 
     # -- the record --------------------------------------------------------------------------------------------------
 
-    def truth(self) -> dict[str, np.ndarray]:
+    def truth(self) -> dict[str, Array]:
         """Columns of the truth (`uavsim.truth.UNITS`), SI, one value a step."""
         table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(_RAW) + len(_OWN))
         raw = {name: table[:, i] * factor for i, (name, (_, factor)) in enumerate(_RAW.items())}
@@ -427,19 +430,18 @@ class JsbsimPlant:
         raw["p_total"] = np.asarray(airdata.total_pressure(static=raw["p_static"], mach=raw["mach"]))
         return raw
 
-    def _travel(self, c: dict[str, np.ndarray]) -> np.ndarray:
+    def _travel(self, c: dict[str, Array]) -> Array:
         """Way along the rail, m, kept once the last shoe has left."""
         rise = c["altitude"] - self._datum[_ALTITUDE] * FT
-        travel = np.stack([c["north"], c["east"], -rise], axis=1) @ np.array(self.rail.along)
+        along = self.rail.along
+        travel: Array = along[0] * c["north"] + along[1] * c["east"] - along[2] * rise
         left = np.flatnonzero(travel >= self.settings.launcher.stroke)
         if left.size:
             travel[left[0] :] = travel[left[0]]
         return travel
 
 
-def _derivatives(
-    now: float, before: float, two_before: float, three_before: float, dt: float
-) -> tuple[float, float]:
+def _derivatives(now: float, before: float, two_before: float, three_before: float, dt: float) -> tuple[float, float]:
     """First and second derivative at the newest of four equidistant values, backward differences of second order."""
     first = (3.0 * now - 4.0 * before + two_before) / (2.0 * dt)
     second = (2.0 * now - 5.0 * before + 4.0 * two_before - three_before) / dt**2
@@ -455,5 +457,3 @@ def _read_catalogue(fdm: FGFDMExec) -> dict[str, str]:
         name, _, access = line.strip().rpartition(" ")
         catalogue[name] = access.strip("()")
     return catalogue
-
-

@@ -7,8 +7,8 @@ then on only a stop behind the shoes is left, which pushes but does not pull. Th
     F(t) = m g0 n(t),   n rises linearly to its plateau, stays, and falls linearly to 0 at the end of the stroke,
 
 where the fall begins at the first moment at which the remaining way is no longer than what the aircraft will run
-while the push dies away: v t_fall + (n g0 / 3 - g sin(theta) / 2) t_fall^2. The front shoe leaves first; for the time that the rear one
-still holds, gravity turns the nose down (tip-off).
+while the push dies away: v t_fall + (n g0 / 3 - g sin(theta) / 2) t_fall^2. The front shoe leaves first; for the time
+that the rear one still holds, gravity turns the nose down (tip-off).
 
 Everything is SI; the rail's frame is (along, right, down), the body's (forward, right, down).
 """
