@@ -7,8 +7,9 @@ Everything is judged against the plant's truth, by times that come from the trut
 * stroke: 50 ms after the true launch … rail exit; transition: … wing out + 2 s (rail exit + 4 s without a wing);
   cruise: the rest. Headline figures are over the three together.
 
-Truth is interpolated linearly to the time of an estimate's row. Raw and filtered figures are over the same rows; rows
-that the estimator itself calls invalid count. A value that does not exist is None (null in JSON), never 0.
+Truth is interpolated linearly to the time of an estimate's row. Raw and filtered figures are over the same rows, those
+at which both exist; rows that the estimator itself calls invalid count. A value that does not exist is None (null in
+JSON), never 0.
 """
 
 from collections.abc import Mapping
@@ -43,8 +44,18 @@ class Judged:
 
     Attributes
     ----------
+    scenario
+        The resolved scenario, as nested plain values.
+    tables
+        'truth', 'estimate' and 'air_data': each gives its columns by name.
+    events
+        What was noticed and done on board, each with `t`, s, and `event`.
+    release_time
+        When the latch let go, s.
     ended
         Why the loop stopped: 'completed', 'crashed' or 'diverged'.
+    versions
+        Of what was flown with.
     """
 
     scenario: Mapping[str, Any]
@@ -69,14 +80,12 @@ class Judged:
 
     @cached_property
     def true_time(self) -> float | None:
-        """When the aircraft began to move, s."""
-        moved = self.truth("rail_s") > MOVED
-        moved &= self.time >= self.release_time
-        if not moved.any() or not moved[-1]:
-            return None
-        back = np.flatnonzero(~moved)
-        first = back[-1] + 1 if back.size else 0
-        return float(self.time[first])
+        """When the aircraft began to move for good, s; a way that is not a number brings it back no more than on."""
+        way = self.truth("rail_s")
+        back = np.flatnonzero((way <= MOVED) | (self.time < self.release_time))
+        moved = np.flatnonzero(way > MOVED)
+        gone = moved[moved > (back[-1] if back.size else -1)]
+        return float(self.time[gone[0]]) if gone.size else None
 
     @cached_property
     def crossing_time(self) -> float | None:
@@ -85,7 +94,7 @@ class Judged:
 
     @cached_property
     def rail_exit_time(self) -> float | None:
-        """When the last shoe leaves, s: the first row after which the way along the rail no longer changes."""
+        """When the last shoe leaves, s: the way along the rail has become the stroke."""
         stroke = self.scenario["launcher"]["stroke"]
         return self._first(self.truth("rail_s") >= stroke, self.release_time)
 
@@ -164,7 +173,7 @@ def score(flight: Judged) -> dict[str, Any]:
 
 
 def outcome(flight: Judged) -> str:
-    """The first that applies: diverged, false_launch, missed_launch, crashed, timeout, cruise."""
+    """Name the first that applies: diverged, false_launch, missed_launch, crashed, timeout, cruise."""
     wings, exit_time, detected = flight.event_time("wings_commanded"), flight.rail_exit_time, flight.detected_time
     if flight.ended == "diverged":
         return "diverged"
@@ -218,10 +227,10 @@ def _airspeed(flight: Judged) -> dict[str, Any]:
 
 
 def _figures(error: Array, raw: Array, sd: Array, valid: Array) -> dict[str, Any]:
-    """Error figures over the rows at which both the raw and the filtered value exist."""
+    """Error figures over the rows at which raw and filtered value exist, and the share of all rows that are valid."""
     both = np.isfinite(error) & np.isfinite(raw)
-    error, raw, sd, valid = error[both], raw[both], sd[both], valid[both]
-    claimed = sd > 0.0
+    error, raw, sd = error[both], raw[both], sd[both]
+    claimed = (sd > 0.0) & np.isfinite(sd)
     relative = error[claimed] / sd[claimed]
     rmse, rmse_raw = _rms(error), _rms(raw)
     return {
@@ -243,18 +252,17 @@ def _pressure(flight: Judged, channel: str) -> dict[str, Any]:
     time = flight.estimate("t")
     truth = np.interp(time, flight.time, flight.truth(name))
     error = flight.estimate(name) - truth
-    readings = flight.tables["air_data"]
-    raw_time = np.asarray(readings["t"], dtype=float)
-    at = np.searchsorted(raw_time, time)
-    raw = np.asarray(readings[name], dtype=float)[np.minimum(at, raw_time.size - 1)] - truth
+    raw = _reading(flight, name, time) - truth
     air = flight.scenario["air_data"]
-    before = (time < flight.release_time) & np.isfinite(error) & np.isfinite(raw)
+    exist = np.isfinite(error) & np.isfinite(raw)
+    before, rows = exist & (time < flight.release_time), exist & flight.rows(time)
     if air["tare"] == "covered":  # the cover keeps the wind out, so only what follows it compares with the free stream
         before &= time > flight.release_time - air["cover_off"]
     if not before.any():
         return dict.fromkeys(("rmse", "rmse_raw", "reduction_percent", "bias"))
-    rows = flight.rows(time) & np.isfinite(error) & np.isfinite(raw)
     bias = error[before].mean()
+    if channel == "total" and air["tare"] == "open":
+        bias -= _open_tare(flight)
     rmse, rmse_raw = _rms(error[rows] - bias), _rms(raw[rows] - raw[before].mean())
     return {
         "rmse": rmse,
@@ -264,29 +272,48 @@ def _pressure(flight: Judged, channel: str) -> dict[str, Any]:
     }
 
 
+def _reading(flight: Judged, name: str, time: Array) -> Array:
+    """Return the head's last reading at each time."""
+    readings = flight.tables["air_data"]
+    at = np.searchsorted(np.asarray(readings["t"], dtype=float), time, side="right") - 1
+    return np.asarray(readings[name], dtype=float)[np.maximum(at, 0)]
+
+
+def _open_tare(flight: Judged) -> float:
+    """Return what a tare in the open takes off p_total from release on, Pa; the rows before do not have it yet."""
+    end = flight.release_time
+    time = np.asarray(flight.tables["air_data"]["t"], dtype=float)
+    rows = (time > end - flight.scenario["air_data"]["tare_duration"]) & (time <= end)
+    difference = _reading(flight, "p_total", time[rows]) - _reading(flight, "p_static", time[rows])
+    return float(difference[np.isfinite(difference)].mean()) if np.isfinite(difference).any() else 0.0
+
+
 def _flight(flight: Judged) -> dict[str, Any]:
     time, speed = flight.time, flight.truth("airspeed")
     exit_time = flight.rail_exit_time
-    cruise = flight.rows(time, "cruise")
-    after = time >= (np.inf if exit_time is None else exit_time)
+    cruise = speed[flight.rows(time, "cruise") & np.isfinite(speed)]
+    altitude = flight.truth("altitude")[time >= (np.inf if exit_time is None else exit_time)]
+    altitude = altitude[np.isfinite(altitude)]
     return {
         "rail_exit_time": exit_time,
         "rail_exit_speed": None if exit_time is None else _number(np.interp(exit_time, time, speed)),
         "wing_out_time": flight.wing_out_time,
-        "cruise_airspeed": _number(speed[cruise].mean()) if cruise.any() else None,
-        "cruise_airspeed_sd": _number(speed[cruise].std()) if cruise.any() else None,
+        "cruise_airspeed": _number(cruise.mean()) if cruise.size else None,
+        "cruise_airspeed_sd": _number(cruise.std()) if cruise.size else None,
         "duration": _number(time[-1]) if time.size else None,
-        "rail_exit_altitude": None if exit_time is None else _number(flight.truth("altitude")[after][0]),
-        "lowest_altitude_after_exit": _number(flight.truth("altitude")[after].min()) if after.any() else None,
+        "rail_exit_altitude": _number(altitude[0]) if altitude.size else None,
+        "lowest_altitude_after_exit": _number(altitude.min()) if altitude.size else None,
     }
 
 
 def _requirement(result: dict[str, Any], wanted: Mapping[str, Any]) -> dict[str, Any]:
-    value: Any = result
+    """Hold a figure against its bounds; one that does not exist, or is no number, does not meet them."""
+    found: Any = result
     for part in wanted["key"].split("."):
-        value = value.get(part) if isinstance(value, dict) else None
+        found = found.get(part) if isinstance(found, dict) else None
+    value = found if isinstance(found, int | float) else None
     low, high = wanted.get("minimum"), wanted.get("maximum")
-    met = isinstance(value, int | float) and (low is None or value >= low) and (high is None or value <= high)
+    met = value is not None and (low is None or value >= low) and (high is None or value <= high)
     return {"key": wanted["key"], "minimum": low, "maximum": high, "value": value, "met": met}
 
 

@@ -7,11 +7,14 @@ are kept only where somebody will want to look: the first, and those that did no
 
 import math
 import os
+import signal
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
+from threading import current_thread, main_thread
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +32,8 @@ ERROR_START = -1.0  # s after the true launch at which it begins
 
 Progress = Callable[[int, int], None]
 """Called with the number of finished flights and of all."""
+Result = tuple[dict[str, Any], "ErrorTrace", Flight | None]
+"""Row, errors, and the flight itself if it is kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,23 +74,41 @@ class Batch:
     def error_time(self) -> NDArray[np.float64]:
         """Middles of the bins of `traces`, s after the true launch."""
         count = max((trace.filtered.size for trace in self.traces), default=0)
-        return ERROR_START + ERROR_STEP * (np.arange(count) + 0.5)
+        return np.asarray(ERROR_START + ERROR_STEP * (np.arange(count) + 0.5), dtype=np.float64)
 
 
-def fly_seeds(scenario: Scenario, seeds: list[int], *, workers: int | None = None, progress: Progress) -> Batch:
+def fly_seeds(
+    scenario: Scenario, seeds: list[int], *, workers: int | None = None, progress: Progress | None = None
+) -> Batch:
     """Fly a scenario once a seed.
 
-    An interrupt (Ctrl-C) ends it early; what was finished is returned with `complete` false.
+    Parameters
+    ----------
+    scenario
+        What to fly; its own seed is not used.
+    seeds
+        One flight each.
+    workers
+        Processes that fly; None: one a processor.
+    progress
+        Called after each flight.
+
+    Returns
+    -------
+    Batch
+        Rows and traces in the order of `seeds`, whatever order they finished in. An interrupt (Ctrl-C) ends it early:
+        then it holds the flights that were finished, with `complete` false.
     """
     import pandas as pd  # noqa: PLC0415
 
     started = time.monotonic()
-    done: dict[int, tuple[dict[str, Any], ErrorTrace, Flight | None]] = {}
+    done: dict[int, Result] = {}
     complete = True
     try:
         for position, result in _results(scenario, seeds, workers or os.cpu_count() or 1):
             done[position] = result
-            progress(len(done), len(seeds))
+            if progress is not None:
+                progress(len(done), len(seeds))
     except KeyboardInterrupt:
         complete = False
     ordered = [done[position] for position in sorted(done)]
@@ -99,26 +122,43 @@ def fly_seeds(scenario: Scenario, seeds: list[int], *, workers: int | None = Non
     )
 
 
-def _results(
-    scenario: Scenario, seeds: list[int], workers: int
-) -> Iterator[tuple[int, tuple[dict[str, Any], ErrorTrace, Flight | None]]]:
-    if workers == 1 or len(seeds) == 1:
+def _results(scenario: Scenario, seeds: list[int], workers: int) -> Iterator[tuple[int, Result]]:
+    """Yield each flight's position in `seeds` and what it gave, as they finish."""
+    if workers == 1 or len(seeds) <= 1:
         for position, seed in enumerate(seeds):
             yield position, _one(scenario, seed, keep=position == 0)
         return
     with ProcessPoolExecutor(min(workers, len(seeds)), mp_context=get_context("spawn")) as pool:
-        waiting: dict[Future[tuple[dict[str, Any], ErrorTrace, Flight | None]], int] = {
-            pool.submit(_one, scenario, seed, keep=position == 0): position for position, seed in enumerate(seeds)
-        }
+        with _interrupts_ignored():
+            waiting: dict[Future[Result], int] = {
+                pool.submit(_one, scenario, seed, keep=position == 0): position for position, seed in enumerate(seeds)
+            }
         try:
             for future in as_completed(waiting):
-                yield waiting[future], future.result()
+                yield waiting.pop(future), future.result()
+        except KeyboardInterrupt:
+            pool.shutdown(wait=True, cancel_futures=True)
+            yield from ((waiting[future], future.result()) for future in waiting if not future.cancelled())
+            raise
         except BaseException:
             pool.shutdown(wait=True, cancel_futures=True)
             raise
 
 
-def _one(scenario: Scenario, seed: int, *, keep: bool) -> tuple[dict[str, Any], ErrorTrace, Flight | None]:
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """Let processes that are started here inherit that Ctrl-C is not theirs: they finish what they fly."""
+    if current_thread() is not main_thread():  # only the main thread may say so
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _one(scenario: Scenario, seed: int, *, keep: bool) -> Result:
     """Fly one seed; the whole flight comes back only if somebody will look at it."""
     own = scenario.with_seed(seed)
     flight = fly(own)
@@ -155,9 +195,7 @@ def _trace(flight: Flight) -> ErrorTrace:
     time = estimate["t"].to_numpy(float)
     airspeed = np.interp(time, truth["t"].to_numpy(), truth["airspeed"].to_numpy())
     bins = np.floor((time - true_time - ERROR_START) / ERROR_STEP).astype(int)
-    rms = [
-        _binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")
-    ]
+    rms = [_binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")]
     return ErrorTrace(flight.score["seed"], *rms)
 
 
@@ -165,4 +203,7 @@ def _binned_rms(error: NDArray[np.float64], bins: NDArray[np.int_]) -> NDArray[n
     use = (bins >= 0) & np.isfinite(error)
     count = np.bincount(bins[use])
     total = np.bincount(bins[use], error[use] ** 2)
-    return np.sqrt(np.divide(total, count, out=np.full(count.size, np.nan), where=count > 0))
+    rms = np.full(count.size, np.nan)
+    np.divide(total, count, out=rms, where=count > 0)
+    np.sqrt(rms, out=rms)
+    return rms

@@ -61,7 +61,7 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
     bare = JsbsimPlant(plant_settings(scenario, draw(scenario)))
     times: list[tuple[float, float, float]] = []
     while leader.k < loop.steps:
-        first = len(leader.tape)
+        first, begin = len(leader.tape), leader.k
         start = perf_counter()
         loop.advance(CHUNK)
         middle = perf_counter()
@@ -72,9 +72,10 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
         _follow(reference, leader.k, tape, reference.step)
         done = perf_counter()
         _follow(bare, leader.k, tape, bare.step_unrecorded)
-        times.append((middle - start, done - begun, perf_counter() - done))
+        ended, steps = perf_counter(), leader.k - begin
+        times.append(((middle - start) / steps, (done - begun) / steps, (ended - done) / steps))
         progress(leader.k / loop.steps)
-    per_step = [1e6 * median(column) / CHUNK for column in zip(*times, strict=True)]
+    per_step = [1e6 * median(column) for column in zip(*times, strict=True)]
     return Cost(
         in_loop=per_step[0],
         reference=per_step[1],
