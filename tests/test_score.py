@@ -1,0 +1,518 @@
+"""Times, phases, outcomes and figures of the score, on small flights made by hand; what is expected is written out."""
+
+import json
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from uavsim.scenario import Scenario
+from uavsim.score import Judged, outcome, score
+from uavsim.truth import STANDARD_GRAVITY
+
+RELEASE, EXIT, WINGS, OUT, MOTOR, END = 2.0, 2.4, 2.52, 2.8, 2.77, 12.0
+STROKE = 5.2
+AIM = 32.0
+EVENTS = (("launch_detected", 2.025), ("wings_commanded", WINGS), ("motor_on", MOTOR))
+
+
+def row(time: float) -> int:
+    """Index of the truth row at `time`."""
+    return round(1000 * time)
+
+
+def made(
+    *,
+    events: tuple[tuple[str, float], ...] = EVENTS,
+    ended: str = "completed",
+    end: float = END,
+    change: Callable[[dict[str, np.ndarray]], None] | None = None,
+    estimate: dict[str, np.ndarray] | None = None,
+    readings: dict[str, np.ndarray] | None = None,
+    **scenario: Any,
+) -> Judged:
+    """A flight that cruises: 10 ms after release it passes 1 mm, at 2.4 s the rail ends, at 2.8 s the wing is out."""
+    t = np.arange(row(end) + 1) / 1000.0
+    since = np.maximum(t - RELEASE, 0.0)
+    way = np.minimum(10.001 * since**2 + 3.0 * STROKE * np.maximum(since - 0.2, 0.0), STROKE)
+    way[t >= EXIT] = STROKE
+    way[t < EXIT] = np.minimum(way[t < EXIT], 5.1)
+    truth = {
+        "t": t,
+        "rail_s": way,
+        "fx": np.where((t > RELEASE + 0.02) & (t < EXIT), 8.0 * STANDARD_GRAVITY, 2.0),
+        "wing": np.clip((t - WINGS) / (OUT - WINGS) * 0.99, 0.0, 1.0),
+        "airspeed": np.interp(t, [RELEASE, EXIT, 4.0], [0.0, 26.0, AIM]),
+        "roll": np.zeros_like(t),
+        "altitude": np.interp(t, [RELEASE, EXIT, END], [1.5, 2.5, 20.0]),
+        "p_total": np.full_like(t, 101_000.0),
+        "p_static": np.full_like(t, 100_500.0),
+    }
+    if change is not None:
+        change(truth)
+    if estimate is None:
+        estimate = estimated(np.arange(0.005, end, 0.01), truth)
+    if readings is None:
+        readings = {name: estimate[name] for name in ("t", "p_total", "p_static")}
+    return Judged(
+        scenario=Scenario.from_dict(scenario).to_dict(),
+        tables={"truth": truth, "estimate": estimate, "air_data": readings},
+        events=[{"event": name, "t": time} for name, time in events],
+        release_time=RELEASE,
+        ended=ended,
+        versions={"uavsim": "0"},
+    )
+
+
+def estimated(
+    t: np.ndarray, truth: dict[str, np.ndarray], error: Any = 0.0, raw: Any = 0.0, sd: float = 1.0
+) -> dict[str, np.ndarray]:
+    speed = np.interp(t, truth["t"], truth["airspeed"])
+    return {
+        "t": t,
+        "airspeed": speed + error,
+        "airspeed_raw": speed + raw,
+        "airspeed_sd": np.full_like(t, sd),
+        "valid": np.ones(t.shape, bool),
+        "p_total": np.interp(t, truth["t"], truth["p_total"]),
+        "p_static": np.interp(t, truth["t"], truth["p_static"]),
+    }
+
+
+def setting(name: str, value: Any, first: float, last: float = math.inf) -> Callable[[dict[str, np.ndarray]], None]:
+    """Set a truth column to a value from `first` up to `last`."""
+
+    def change(truth: dict[str, np.ndarray]) -> None:
+        truth[name][(truth["t"] >= first - 1e-9) & (truth["t"] < last - 1e-9)] = value
+
+    return change
+
+
+def holding(*changes: Callable[[dict[str, np.ndarray]], None]) -> Callable[[dict[str, np.ndarray]], None]:
+    def change(truth: dict[str, np.ndarray]) -> None:
+        for each in changes:
+            each(truth)
+
+    return change
+
+
+NEVER_FREE = setting("rail_s", 4.0, 2.3)
+FOLDED = setting("wing", 0.0, 0.0)
+
+
+# -- times -----------------------------------------------------------------------------------------------------------
+
+
+def test_times_of_a_plain_flight() -> None:
+    launch, flight = score(made())["launch"], score(made())["flight"]
+    assert launch["release_time"] == RELEASE
+    assert launch["true_time"] == pytest.approx(RELEASE + 0.010)  # 10.001 (10 ms)^2 = 1.0001 mm
+    assert launch["crossing_time"] == pytest.approx(RELEASE + 0.021)
+    assert launch["detected_time"] == 2.025
+    assert launch["latency"] == pytest.approx(0.015)
+    assert launch["latency_from_crossing"] == pytest.approx(0.004)
+    assert launch["false_detections"] == 0
+    assert launch["detector"] == "multi-level-window"
+    assert flight["rail_exit_time"] == EXIT
+    assert flight["rail_exit_speed"] == pytest.approx(26.0)
+    assert flight["wing_out_time"] == pytest.approx(OUT)
+    assert flight["duration"] == END
+
+
+def test_exactly_a_millimetre_is_not_yet_moved() -> None:
+    flight = made(change=setting("rail_s", 1e-3, RELEASE, RELEASE + 0.05))
+    assert flight.true_time == pytest.approx(RELEASE + 0.05)
+
+
+def test_true_launch_does_not_come_back() -> None:
+    """5 mm at once, back behind 1 mm for 20 ms: the launch is the last time it leaves."""
+    flight = made(change=holding(setting("rail_s", 5e-3, RELEASE, RELEASE + 0.03), setting("rail_s", 0.0, 2.03, 2.05)))
+    assert flight.true_time == pytest.approx(2.05)
+
+
+def test_true_launch_is_not_before_release() -> None:
+    """Handled on the rail: 2 mm ahead all the time before release."""
+    assert made(change=setting("rail_s", 2e-3, 0.0, RELEASE + 0.02)).true_time == RELEASE
+    knocked = made(change=setting("rail_s", 2e-3, 1.0, 1.1))
+    assert knocked.true_time == pytest.approx(RELEASE + 0.010)
+
+
+def test_an_aircraft_that_stays_or_returns_was_not_launched() -> None:
+    for change in (setting("rail_s", 0.0, RELEASE), holding(NEVER_FREE, setting("rail_s", 0.0, 3.0))):
+        flight = made(change=change, events=())
+        assert flight.true_time is None
+        assert flight.rail_exit_time is None
+        assert score(flight)["airspeed"]["samples"] == 0
+
+
+def test_a_way_that_is_no_number_is_no_return() -> None:
+    flight = made(change=holding(NEVER_FREE, setting("rail_s", math.nan, 3.0)), ended="diverged")
+    assert flight.true_time == pytest.approx(RELEASE + 0.010)
+
+
+def test_crossing_is_above_four_and_a_half_g() -> None:
+    weak = made(change=setting("fx", 4.5 * STANDARD_GRAVITY, 0.0))
+    assert score(weak)["launch"]["crossing_time"] is None
+    assert score(weak)["launch"]["latency_from_crossing"] is None
+    above = made(change=holding(setting("fx", 2.0, 0.0), setting("fx", 44.14, 2.3)))
+    assert above.crossing_time == pytest.approx(2.3)
+
+
+def test_detections_before_release_are_false_and_never_the_detection() -> None:
+    early = (("launch_detected", 0.7), ("launch_detected", 1.999), *EVENTS)
+    launch = score(made(events=early))["launch"]
+    assert launch["false_detections"] == 2
+    assert launch["detected_time"] == 2.025
+    only_early = score(made(events=early[:2]))
+    assert only_early["launch"]["false_detections"] == 2
+    assert only_early["launch"]["detected_time"] is None
+    assert only_early["launch"]["latency"] is None
+    assert only_early["outcome"] == "missed_launch"
+
+
+def test_a_detection_at_release_counts() -> None:
+    launch = score(made(events=(("launch_detected", RELEASE), *EVENTS)))["launch"]
+    assert (launch["detected_time"], launch["false_detections"]) == (RELEASE, 0)
+    assert launch["latency"] == pytest.approx(-0.010)
+
+
+# -- phases ----------------------------------------------------------------------------------------------------------
+
+
+def starts(flight: Judged) -> dict[str, float]:
+    """Time of the first truth row of each phase, in order."""
+    phases = flight.phases()
+    changes = [0, *(np.flatnonzero(phases[1:] != phases[:-1]) + 1)]
+    assert len({phases[i] for i in changes}) == len(changes)  # none comes twice
+    return {phases[i]: float(flight.time[i]) for i in changes}
+
+
+def test_phases_of_a_plain_flight() -> None:
+    expected = {"rail": 0.0, "stroke": RELEASE + 0.060, "transition": EXIT, "cruise": OUT + 2.0}
+    assert starts(made()) == pytest.approx(expected)
+
+
+def test_phases_do_not_depend_on_what_was_detected() -> None:
+    assert starts(made(events=())) == starts(made())
+
+
+def test_a_wing_that_never_comes_out_ends_the_transition_after_four_seconds() -> None:
+    assert starts(made(change=FOLDED))["cruise"] == pytest.approx(EXIT + 4.0)
+    assert score(made(change=FOLDED))["flight"]["wing_out_time"] is None
+
+
+@pytest.mark.parametrize(("out", "cruise"), [(1.0, 3.0), (0.2, EXIT)])
+def test_a_wing_that_is_out_on_the_rail(out: float, cruise: float) -> None:
+    assert starts(made(change=setting("wing", 1.0, out)))["cruise"] == pytest.approx(cruise)
+
+
+def test_a_short_record_lacks_the_phases_it_did_not_reach() -> None:
+    assert set(starts(made(end=4.0))) == {"rail", "stroke", "transition"}
+    assert set(starts(made(end=2.3))) == {"rail", "stroke"}
+    assert set(starts(made(end=1.9))) == {"rail"}
+    result = score(made(end=4.0))["airspeed"]
+    assert result["cruise"]["samples"] == 0
+    assert all(value is None for key, value in result["cruise"].items() if key != "samples")
+    assert result["stroke"]["samples"] > 0
+
+
+def test_a_launch_that_stays_on_the_rail_is_all_stroke() -> None:
+    assert set(starts(made(change=NEVER_FREE))) == {"rail", "stroke"}
+
+
+def test_every_row_is_in_one_phase_and_the_headline_is_over_all_three() -> None:
+    flight = made()
+    t = flight.estimate("t")
+    phases = [flight.rows(t, name) for name in ("stroke", "transition", "cruise")]
+    assert np.array_equal(np.sum(phases, axis=0), flight.rows(t).astype(int))
+    assert np.array_equal(flight.rows(t), t >= RELEASE + 0.060)
+    figures = score(flight)["airspeed"]
+    assert figures["samples"] == sum(figures[name]["samples"] for name in ("stroke", "transition", "cruise"))
+
+
+# -- outcomes --------------------------------------------------------------------------------------------------------
+
+
+def with_event(name: str, time: float | None) -> tuple[tuple[str, float], ...]:
+    """Events of the plain flight with one at another time, or without it."""
+    return tuple((n, t if n != name else time) for n, t in EVENTS if n != name or time is not None)  # type: ignore[misc]
+
+
+@pytest.mark.parametrize(
+    ("expected", "flight"),
+    [
+        ("cruise", {}),
+        ("diverged", {"ended": "diverged"}),
+        ("diverged", {"ended": "diverged", "events": with_event("wings_commanded", 2.1)}),
+        ("diverged", {"ended": "diverged", "events": ()}),
+        ("false_launch", {"events": with_event("wings_commanded", EXIT - 0.001)}),
+        ("cruise", {"events": with_event("wings_commanded", EXIT)}),
+        ("false_launch", {"events": (("launch_detected", 1.0), ("wings_commanded", 1.2))}),
+        ("false_launch", {"events": with_event("wings_commanded", 2.39), "ended": "crashed"}),
+        ("false_launch", {"change": NEVER_FREE}),
+        ("missed_launch", {"events": ()}),
+        ("missed_launch", {"events": (), "ended": "crashed"}),
+        ("missed_launch", {"events": (), "change": NEVER_FREE}),
+        ("missed_launch", {"events": (), "change": setting("rail_s", 0.0, RELEASE)}),
+        ("missed_launch", {"events": with_event("launch_detected", EXIT + 0.501)}),
+        ("cruise", {"events": with_event("launch_detected", EXIT + 0.499)}),
+        ("crashed", {"ended": "crashed"}),
+        ("crashed", {"ended": "crashed", "end": 3.0}),
+        ("timeout", {"change": setting("airspeed", AIM - 2.01, 9.0, 9.001)}),
+        ("timeout", {"change": setting("airspeed", AIM + 2.01, 9.0, 9.001)}),
+        ("cruise", {"change": setting("airspeed", AIM - 1.99, 9.0, 9.001)}),
+        ("cruise", {"change": setting("airspeed", 25.0, 6.9, 6.99)}),
+        ("timeout", {"change": setting("airspeed", math.nan, 9.0, 9.001)}),
+        ("timeout", {"change": setting("roll", math.radians(-30.0), 11.0, 11.001)}),
+        ("cruise", {"change": setting("roll", math.radians(29.9), 7.0)}),
+        ("timeout", {"change": setting("wing", 0.98, 8.0, 8.001)}),
+        ("timeout", {"change": FOLDED}),
+        ("timeout", {"events": with_event("motor_on", None)}),
+        ("timeout", {"events": with_event("motor_on", 7.5)}),
+        ("timeout", {"end": 6.0}),
+        ("cruise", {"flight_computer": {"airspeed": 33.9}}),
+        ("timeout", {"flight_computer": {"airspeed": 34.1}}),
+    ],
+)
+def test_outcome_is_the_first_that_applies(expected: str, flight: dict[str, Any]) -> None:
+    assert outcome(made(**flight)) == expected
+
+
+def test_expected_outcome_is_the_scenarios() -> None:
+    result = score(made(expect="missed_launch", seed=9))
+    assert (result["outcome"], result["expected"], result["seed"]) == ("cruise", "missed_launch", 9)
+
+
+# -- airspeed --------------------------------------------------------------------------------------------------------
+
+
+def noisy(seed: int = 3) -> tuple[Judged, np.ndarray, np.ndarray, np.ndarray]:
+    """A flight with errors drawn at random, its filtered and raw errors, and the times of the rows."""
+    t = np.arange(0.0047, END, 0.01)
+    generator = np.random.default_rng(seed)
+    error, raw = 0.1 + 0.5 * generator.standard_normal(t.size), generator.standard_normal(t.size)
+    return made(estimate=estimated(t, dict(made().tables["truth"]), error, raw, sd=0.4)), error, raw, t
+
+
+@pytest.mark.parametrize(
+    ("phase", "first", "last"),
+    [
+        (None, RELEASE + 0.06, math.inf),
+        ("stroke", RELEASE + 0.06, EXIT),
+        ("transition", EXIT, OUT + 2.0),
+        ("cruise", OUT + 2.0, math.inf),
+    ],
+)
+def test_figures_against_their_formulas(phase: str | None, first: float, last: float) -> None:
+    flight, error, raw, t = noisy()
+    figures = score(flight)["airspeed"] if phase is None else score(flight)["airspeed"][phase]
+    rows = (t >= first) & (t < last)
+    e, r = error[rows], raw[rows]
+    assert figures["samples"] == rows.sum()
+    assert figures["rmse"] == pytest.approx(math.sqrt(sum(x * x for x in e) / e.size))
+    assert figures["rmse_raw"] == pytest.approx(math.sqrt(sum(x * x for x in r) / r.size))
+    assert figures["reduction_percent"] == pytest.approx(100.0 - 100.0 * figures["rmse"] / figures["rmse_raw"])
+    assert figures["bias"] == pytest.approx(math.fsum(e) / e.size)
+    assert figures["max_error"] == pytest.approx(max(map(abs, e)))
+    assert figures["nees_mean"] == pytest.approx(sum((x / 0.4) ** 2 for x in e) / e.size)
+    assert figures["coverage_95"] == pytest.approx(sum(abs(x) <= 1.959964 * 0.4 for x in e) / e.size)
+    assert figures["valid_fraction"] == 1.0
+
+
+def test_truth_is_interpolated_to_the_row() -> None:
+    """65 m/s per second in the stroke: the truth 0.7 ms after a row of it is 0.0455 m/s more; an exact estimate shows 0."""
+    truth = dict(made().tables["truth"])
+    """The truth grows by 65 m/s in a second of the stroke: an exact estimate 0.7 ms after one of its rows has no error."""
+    exact = estimated(t, truth)
+    exact["airspeed"] = 65.0 * (t - RELEASE)
+    assert score(made(estimate=exact))["airspeed"]["stroke"]["rmse"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_invalid_rows_count_and_are_told() -> None:
+    flight, error, _, t = noisy()
+    flight.tables["estimate"]["valid"][t < 3.0] = False
+    figures = score(flight)["airspeed"]
+    rows = t >= RELEASE + 0.06
+    assert figures["samples"] == rows.sum()
+    assert figures["rmse"] == pytest.approx(np.sqrt(np.mean(error[rows] ** 2)))
+    assert figures["valid_fraction"] == pytest.approx(np.mean(t[rows] >= 3.0))
+    assert figures["stroke"]["valid_fraction"] == 0.0
+
+
+def test_a_row_without_a_raw_value_counts_for_neither() -> None:
+    flight, error, raw, t = noisy()
+    missing = (t > 5.0) & (t < 6.0)
+    flight.tables["estimate"]["airspeed_raw"][missing] = math.nan
+    figures = score(flight)["airspeed"]["cruise"]
+    rows = (t >= OUT + 2.0) & ~missing
+    assert figures["samples"] == rows.sum()
+    assert figures["rmse"] == pytest.approx(np.sqrt(np.mean(error[rows] ** 2)))
+    assert figures["rmse_raw"] == pytest.approx(np.sqrt(np.mean(raw[rows] ** 2)))
+    assert figures["valid_fraction"] == 1.0
+
+
+def test_an_estimate_that_is_no_number_is_not_scored_but_told() -> None:
+    flight, _, _, t = noisy()
+    lost = t > 6.0
+    flight.tables["estimate"]["airspeed"][lost] = math.nan
+    flight.tables["estimate"]["valid"][lost] = False
+    figures = score(flight)["airspeed"]["cruise"]
+    rows = t >= OUT + 2.0
+    assert figures["samples"] == (rows & ~lost).sum()
+    assert figures["valid_fraction"] == pytest.approx(np.mean(~lost[rows]))
+
+
+def test_without_a_claim_there_is_no_consistency_figure() -> None:
+    flight, *_ = noisy()
+    flight.tables["estimate"]["airspeed_sd"][:] = 0.0
+    figures = score(flight)["airspeed"]
+    assert figures["rmse"] is not None
+    assert figures["nees_mean"] is None
+    assert figures["coverage_95"] is None
+
+
+def test_no_reduction_over_a_perfect_raw_value() -> None:
+    figures = score(made())["airspeed"]
+    assert (figures["rmse"], figures["rmse_raw"], figures["reduction_percent"]) == (0.0, 0.0, None)
+
+
+# -- pressure --------------------------------------------------------------------------------------------------------
+
+
+def pressed(tare: str, *, tare_taken: float, total: float = 120.0, static: float = 70.0, wind: float = 0.0) -> Judged:
+    """Readings with constant offsets and alternating noise of 4 Pa; an estimate with 1 Pa of it, less the tare.
+
+    Before release the free stream's total pressure is `wind` Pa above the static one; the cover keeps it out.
+    """
+    t = np.arange(0.005, END, 0.01)
+    sign = np.where(np.arange(t.size) % 2, 1.0, -1.0)
+    truth = dict(made().tables["truth"])
+    truth["p_total"] = np.where(truth["t"] < RELEASE, 100_500.0 + wind, 101_000.0)
+    free_total = np.where(t < RELEASE, 100_500.0 + wind, 101_000.0)
+    covered = (t < RELEASE - 0.5) & (tare == "covered")
+    port = np.where(covered, 100_500.0, free_total)
+    tared_from = {"covered": RELEASE - 0.5, "open": RELEASE, "none": math.inf}[tare]
+    estimate = estimated(t, truth)
+    estimate["p_total"] = port + total + sign - np.where(t > tared_from, tare_taken, 0.0)
+    estimate["p_static"] = 100_500.0 + static + sign
+    readings = {"t": t, "p_total": port + total + 4.0 * sign, "p_static": 100_500.0 + static + 4.0 * sign}
+
+    def replaced(columns: dict[str, np.ndarray]) -> None:
+        columns["p_total"] = truth["p_total"]
+
+    return made(change=replaced, estimate=estimate, readings=readings, air_data={"tare": tare})
+
+
+@pytest.mark.parametrize(
+    ("tare", "taken", "wind", "bias_total"),
+    [
+        ("covered", 50.0, 0.0, 70.0),  # 120 - 50
+        ("covered", 50.0, 30.0, 70.0),  # the wind is in the truth and, without the cover, in the reading
+        ("open", 50.0, 0.0, 70.0),
+        ("open", 80.0, 30.0, 40.0),  # a tare in the wind takes its dynamic pressure off for good: 120 - 50 - 30
+        ("none", 0.0, 0.0, 120.0),
+    ],
+)
+def test_pressure_error_is_without_its_mean_before_launch(
+    tare: str, taken: float, wind: float, bias_total: float
+) -> None:
+    pressure = score(pressed(tare, tare_taken=taken, wind=wind))["pressure"]
+    assert pressure["total"]["bias"] == pytest.approx(bias_total, abs=0.05)
+    assert pressure["static"]["bias"] == pytest.approx(70.0, abs=0.05)
+    for channel in ("total", "static"):
+        figures = pressure[channel]
+        assert figures["rmse"] == pytest.approx(1.0, abs=0.01)
+        assert figures["rmse_raw"] == pytest.approx(4.0, abs=0.01)
+        assert figures["reduction_percent"] == pytest.approx(75.0, abs=0.3)
+
+
+def test_without_readings_before_launch_there_is_no_pressure_figure() -> None:
+    flight = pressed("covered", tare_taken=50.0)
+    flight.tables["estimate"]["p_total"][flight.estimate("t") < RELEASE] = math.nan
+    pressure = score(flight)["pressure"]
+    assert pressure["total"] == {"rmse": None, "rmse_raw": None, "reduction_percent": None, "bias": None}
+    assert pressure["static"]["rmse"] is not None
+
+
+# -- flight ----------------------------------------------------------------------------------------------------------
+
+
+def test_flight_figures() -> None:
+    flight = made(change=holding(setting("altitude", 2.2, 3.0, 3.1), setting("altitude", 0.5, 1.0, 1.1)))
+    figures = score(flight)["flight"]
+    assert figures["rail_exit_altitude"] == pytest.approx(2.5)
+    assert figures["lowest_altitude_after_exit"] == pytest.approx(2.2)
+    assert figures["cruise_airspeed"] == pytest.approx(AIM)
+    assert figures["cruise_airspeed_sd"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_figures_of_a_diverged_flight_are_those_of_what_was_flown() -> None:
+    nothing = [setting(name, math.nan, 8.0) for name in ("airspeed", "altitude", "fx", "p_total", "p_static")]
+    result = score(made(change=holding(*nothing), end=8.0, ended="diverged"))
+    assert result["outcome"] == "diverged"
+    assert result["flight"]["lowest_altitude_after_exit"] == pytest.approx(2.5)
+    assert result["flight"]["cruise_airspeed"] == pytest.approx(AIM)
+    assert result["airspeed"]["cruise"]["samples"] > 300
+    json.dumps(result, allow_nan=False)
+
+
+# -- requirements and JSON -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("key", "minimum", "maximum", "met"),
+    [
+        ("launch.false_detections", None, 0, True),
+        ("launch.latency", 0.015 - 1e-6, 0.015 + 1e-6, True),
+        ("launch.latency", 0.016, None, False),
+        ("launch.latency", None, 0.014, False),
+        ("airspeed.cruise.samples", 1, None, True),
+        ("airspeed.reduction_percent", 10.0, None, False),  # null: raw is perfect
+        ("airspeed.reduction_percent", None, None, False),
+        ("airspeed.stroke", 0.0, None, False),
+        ("no.such.key", None, 1.0, False),
+        ("outcome", None, 1.0, False),
+    ],
+)
+def test_requirements(key: str, minimum: float | None, maximum: float | None, met: bool) -> None:
+    wanted = {k: v for k, v in (("key", key), ("minimum", minimum), ("maximum", maximum)) if v is not None}
+    (result,) = score(made(requirements=[wanted]))["requirements"]
+    assert result["met"] is met
+    assert (result["key"], result["minimum"], result["maximum"]) == (key, minimum, maximum)
+    assert result["value"] is None or isinstance(result["value"], int | float)
+
+
+@pytest.mark.parametrize(
+    "flight",
+    [
+        {},
+        {"events": (), "end": 1.0},
+        {"events": (), "change": setting("rail_s", 0.0, RELEASE)},
+        {"change": setting("airspeed", math.nan, 0.0), "ended": "diverged"},
+        {"estimate": {name: np.empty(0) for name in estimated(np.empty(0), dict(made().tables["truth"]))}},
+    ],
+)
+def test_score_is_json_of_numbers_and_null(flight: dict[str, Any]) -> None:
+    """Every value survives a strict JSON round trip as it is: no NaN, no numpy scalar."""
+    result = score(made(**flight))
+    assert json.loads(json.dumps(result, allow_nan=False)) == result
+
+
+def test_what_does_not_exist_is_null_and_not_zero() -> None:
+    """A flight that never moves has no launch, no phases, no figures; counts are counts."""
+    result = score(made(events=(), change=setting("rail_s", 0.0, RELEASE)))
+    launch, flight, airspeed = result["launch"], result["flight"], result["airspeed"]
+    for value in (
+        launch["true_time"], launch["detected_time"], launch["latency"], launch["latency_from_crossing"],
+        flight["rail_exit_time"], flight["rail_exit_speed"], flight["rail_exit_altitude"], flight["cruise_airspeed"],
+        flight["cruise_airspeed_sd"], flight["lowest_altitude_after_exit"],
+        *(airspeed[key] for key in airspeed if key not in ("samples", "stroke", "transition", "cruise")),
+        *(airspeed[phase][key] for phase in ("stroke", "transition", "cruise") for key in airspeed[phase]
+          if key != "samples"),
+    ):  # fmt: skip
+        assert value is None
+    assert result["pressure"]["total"]["rmse"] is None
+    assert airspeed["samples"] == 0
+    assert launch["false_detections"] == 0
