@@ -21,16 +21,20 @@ class VibrationSettings:
 
     Attributes
     ----------
-    waiting_rms_g, stroke_rms_g, flight_rms_g : float
-        Rms on each axis until release, from there to the end of the rail, and in flight, g.
+    waiting_rms_g : float
+        Rms on each axis until release, g.
+    stroke_rms_g : float
+        Rms on each axis from there to the end of the rail, g.
+    flight_rms_g : float
+        Rms on each axis in flight, g.
     band_hz : (float, float)
         Band that the noise lies in, Hz.
     ring_hz : float
-        Frequency at which the airframe rings along body x once released, Hz.
+        Frequency at which the push makes the airframe ring along body x, Hz.
     ring_fraction : float
-        Its amplitude as a fraction of the plateau of the push.
+        Amplitude that the ring grows to while the push rises, as a fraction of the push's plateau.
     ring_decay : float
-        Time in which it decays to 1/e, s.
+        Time in which it decays to 1/e from there, s.
     """
 
     waiting_rms_g: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.05
@@ -50,8 +54,10 @@ class AccelerometerSettings:
     ----------
     preset : str
         A shipped part.
-    range_g, rate : float or None
-        Range in g and output rate in Hz; None is the part's default.
+    range_g : float or None
+        Range, ±g; None is the part's default.
+    rate : float or None
+        Output rate, Hz; None is the part's default.
     noise_scale : float
         Factor on the part's white noise, an assumption about the part: it holds for the unit and for the filter.
     bias : float or (x, y, z)

@@ -56,9 +56,11 @@ class EstimatorSettings:
         "paper", the published method; "paper-filterpy", the same through the filterpy package.
     model : str
         Relation of pressures and airspeed, "compressible" or "bernoulli".
-    q_total, q_static : float
-        Q, growth of the variance of the pressures from one sample to the next, Pa². The defaults give steady gains of
-        0.8 and 0.3 for readings of 3.7 Pa standard deviation.
+    q_total : float
+        Q, growth of the total pressure's variance from one sample to the next, Pa²; the default gives a steady gain of
+        0.8 for readings of 3.7 Pa standard deviation.
+    q_static : float
+        The same of the static pressure, Pa²; the default gives a gain of 0.3.
     wind_sd : float
         Standard deviation of the airspeed while nothing is measured, m/s: that of the wind.
     vapour_fraction : float

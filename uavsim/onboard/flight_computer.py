@@ -66,23 +66,40 @@ class FlightComputerSettings:
     ----------
     airspeed
         To hold, m/s.
-    stroke_end_level_g, stroke_end_mean, stroke_end_hold
-        The stroke is over when the mean of f_x over `stroke_end_mean` s has stayed below the level for
-        `stroke_end_hold` s.
+    stroke_end_level_g
+        The stroke is over when a short mean of f_x has stayed below this level, g, ...
+    stroke_end_mean
+        ... taken over this time, s, ...
+    stroke_end_hold
+        ... for this time, s.
     speed_gain_min
         Integral of f_x less its rail mean since detection that makes it a launch, m/s.
     rearm_delay
         After a detection that was none, s.
-    wing_delay, motor_delay
-        From the end of the stroke to the wings, and from the wings to the motor, s.
-    level_pitch_deg, launch_pitch_deg, climb_pitch_deg
-        Pitch in level cruise, from the rail until the airspeed is gained, and at most in a climb, degrees.
+    wing_delay
+        From the noticed end of the stroke to the command for the wings, s.
+    motor_delay
+        From that command to the motor, s.
+    level_pitch_deg
+        Pitch in level cruise, degrees.
+    launch_pitch_deg
+        Pitch from the rail until the airspeed is gained, degrees.
+    climb_pitch_deg
+        Greatest pitch in a climb, degrees.
     speed_margin
         Airspeed error from which on the launch's pitch is held, m/s.
-    height, height_gain
-        Cruise height above the place of launch, m; pitch for a height error, rad/m.
-    throttle_level, throttle_gain, throttle_rate, throttle_climb
-        Throttle in level cruise; per m/s of error; per m of integrated error; per rad of pitch above level.
+    height
+        Cruise height above the place of launch, m.
+    height_gain
+        Pitch for a height error, rad/m.
+    throttle_level
+        Throttle in level cruise, 0 ... 1.
+    throttle_gain
+        Throttle for an airspeed error, 1/(m/s).
+    throttle_rate
+        Throttle for an integrated airspeed error, 1/m.
+    throttle_climb
+        Throttle for pitch above level, 1/rad.
     """
 
     airspeed: Annotated[float, Interval(ge=10, le=100)] = 32.0

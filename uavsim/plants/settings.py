@@ -34,14 +34,20 @@ class EnvironmentSettings:
         Of the ground above mean sea level, m.
     temperature_offset
         Difference from the standard atmosphere's temperature, K.
-    wind_speed, wind_from_deg
-        Mean wind over the ground, m/s, and the direction it comes from, degrees from north.
+    wind_speed
+        Mean wind over the ground, m/s.
+    wind_from_deg
+        Direction it comes from, degrees from north.
     turbulence_wind_20ft
         Wind speed at 20 ft that sets the intensity of low-altitude Dryden turbulence (MIL-F-8785C), m/s; 0 is none.
     turbulence_severity
         Probability-of-exceedance index of the same model above 2000 ft (1 … 7).
-    gust_speed, gust_length_s, gust_delay
-        One-minus-cosine gust: peak, m/s, positive from ahead; duration, s; start after the wing is out, s.
+    gust_speed
+        Peak of a one-minus-cosine gust, m/s, positive from ahead; 0 is none.
+    gust_length_s
+        Its duration, s.
+    gust_delay
+        Its start after the wing is out, s.
     """
 
     latitude_deg: Annotated[float, Interval(ge=-90, le=90)] = 47.0
@@ -65,20 +71,26 @@ class LauncherSettings:
     peak_specific_force_g
         Specific force along body x that the push gives on its plateau, standard g. The acceleration along the rail
         is that less g sin(elevation), friction and drag.
-    rise, fall
-        Times in which the push grows to the plateau and dies away, s.
+    rise
+        Time in which the push grows to the plateau, s.
+    fall
+        Time in which it dies away, s.
     stroke
         Way along the rail over which the aircraft is pushed, m; its end is where the rear shoe leaves.
-    elevation_deg, heading_deg
-        Of the rail, degrees.
+    elevation_deg
+        Of the rail above the horizon, degrees.
+    heading_deg
+        Of the rail, degrees from north.
     height
         Of the aircraft's centre of gravity above the ground before release, m.
     friction
         Coulomb coefficient between shoes and rail.
     force_spread
         Half-width of the uniform distribution from which a flight's force factor is drawn (0.02: ±2 %).
-    wait_min, wait_max
-        Bounds of the uniform distribution of the waiting time before release, s.
+    wait_min
+        Least waiting time before release, s; a flight's is drawn evenly between the two.
+    wait_max
+        Greatest waiting time, s.
     """
 
     peak_specific_force_g: Annotated[float, Interval(ge=0.1, le=40)] = 8.0
