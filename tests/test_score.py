@@ -322,9 +322,9 @@ def test_figures_against_their_formulas(phase: str | None, first: float, last: f
 
 
 def test_truth_is_interpolated_to_the_row() -> None:
-    """65 m/s per second in the stroke: the truth 0.7 ms after a row of it is 0.0455 m/s more; an exact estimate shows 0."""
+    """In the stroke the truth grows by 65 m/s in a second: a right estimate 0.7 ms after a truth row has no error."""
     truth = dict(made().tables["truth"])
-    """The truth grows by 65 m/s in a second of the stroke: an exact estimate 0.7 ms after one of its rows has no error."""
+    t = np.arange(2.1007, 2.39, 0.01)
     exact = estimated(t, truth)
     exact["airspeed"] = 65.0 * (t - RELEASE)
     assert score(made(estimate=exact))["airspeed"]["stroke"]["rmse"] == pytest.approx(0.0, abs=1e-9)
