@@ -1,0 +1,443 @@
+"""The flight computer with a detector and an estimator that say what the test wants."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from uavsim import airdata
+from uavsim.onboard.flight_computer import LONGEST_STEP, Estimate, FlightComputer, FlightComputerSettings
+from uavsim.onboard.launch import MultiLevelWindow
+
+G = 9.80665  # m/s^2
+RATE = 1000.0  # Hz
+REST = 2.1  # m/s^2 along body x on the rail
+NAN = math.nan
+SETTINGS = FlightComputerSettings()
+
+
+class Spotter:
+    """Recognises at the first reading at or after each of the given times."""
+
+    level = count = total = 0
+    triggered = False
+
+    def __init__(self, *times: float) -> None:
+        self.times = list(times)
+        self.resets: int = 0
+        self.seen: list[float] = []
+
+    def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
+        self.seen.append(t)
+        if self.times and t >= self.times[0]:
+            self.times.pop(0)
+            return True
+        return False
+
+    def reset(self) -> None:
+        self.resets += 1
+
+
+class Oracle:
+    """Gives back the estimate that stands in `next`, whatever it reads."""
+
+    def __init__(self) -> None:
+        self.next: Estimate | None = None
+
+    def step(self, *reading: float) -> Estimate | None:
+        return self.next
+
+
+def computer(*times: float, **settings: float) -> FlightComputer:
+    return FlightComputer(replace(SETTINGS, **settings), Spotter(*times), Oracle(), RATE)
+
+
+def feed(box: FlightComputer, fx: Any, first: float, last: float, rate: float = RATE) -> None:
+    """Readings of `fx` (a number, or a function of time) from `first` up to but not at `last`."""
+    for k in range(round(first * rate), round(last * rate)):
+        t = k / rate
+        box.accelerometer(t, fx(t) if callable(fx) else fx, 0.0, -9.6)
+
+
+def events(box: FlightComputer) -> dict[str, float]:
+    return {e["event"]: e["t"] for e in box.events}
+
+
+def launched(**settings: float) -> FlightComputer:
+    """8 g from 2.0 to 2.4 s, recognised at 2.02 s, then nothing until 4 s."""
+    box = computer(2.02, **settings)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.4)
+    feed(box, -1.0, 2.4, 4.0)
+    return box
+
+
+# -- from the rail to the motor --------------------------------------------------------------------------------------
+
+
+def test_a_launch_goes_through_its_states_in_order() -> None:
+    box = computer(2.02)
+    seen = [(box.state, box.commands)]
+    for k in range(4000):
+        t = k / RATE
+        box.accelerometer(t, 8.0 * G if 2.0 <= t < 2.4 else REST if t < 2.0 else -1.0, 0.0, -9.6)
+        if seen[-1] != (box.state, box.commands):
+            seen.append((box.state, box.commands))
+    pitch = math.radians(SETTINGS.launch_pitch_deg)
+    assert seen == [
+        ("waiting", (0.0, 0.0, pitch, 0.0, 0.0)),
+        ("stroke", (0.0, 0.0, pitch, 0.0, 0.0)),
+        ("coasting", (0.0, 0.0, pitch, 0.0, 1.0)),
+        ("wings", (1.0, 0.0, pitch, 0.0, 1.0)),
+        ("flying", (1.0, SETTINGS.throttle_level, pitch, 0.0, 1.0)),
+    ]
+    assert [e["event"] for e in box.events] == ["launch_detected", "stroke_end", "wings_commanded", "motor_on"]
+
+
+@pytest.mark.parametrize(("wing_delay", "motor_delay"), [(0.10, 0.25), (0.0, 0.0), (0.3, 0.7)])
+def test_delays_run_from_the_end_of_the_stroke_and_from_the_wings(wing_delay: float, motor_delay: float) -> None:
+    at = events(launched(wing_delay=wing_delay, motor_delay=motor_delay))
+    step = 1.0 / RATE  # an action waits for the next reading
+    assert wing_delay <= at["wings_commanded"] - at["stroke_end"] + 1e-9 <= wing_delay + step + 2e-9
+    assert motor_delay <= at["motor_on"] - at["wings_commanded"] + 1e-9 <= motor_delay + step + 2e-9
+
+
+def test_without_a_detection_nothing_is_commanded() -> None:
+    box = computer()
+    before = box.commands
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.4)
+    feed(box, -1.0, 2.4, 4.0)
+    assert box.state == "waiting"
+    assert box.events == []
+    assert box.commands is before
+
+
+def test_the_detector_is_not_asked_while_there_is_a_launch_to_follow() -> None:
+    box = launched()
+    assert max(box.detector.seen) == pytest.approx(2.02)  # type: ignore[attr-defined]
+    assert box.detector.resets == 0  # type: ignore[attr-defined]
+
+
+# -- end of the stroke -----------------------------------------------------------------------------------------------
+
+
+def test_stroke_ends_when_the_mean_of_10_ms_was_below_1_g_for_20_ms() -> None:
+    """From 8 g at once to -1 m/s²: enough of the last ten readings must be new ones; 20 ms later it is over."""
+    crossed = next(n for n in range(11) if n * -1.0 + (10 - n) * 8.0 * G < 10 * G)
+    assert events(launched())["stroke_end"] == pytest.approx(2.4 + (crossed - 1) / RATE + 0.020, abs=1e-9)
+
+
+@pytest.mark.parametrize("hold", [0.005, 0.05])
+def test_the_hold_and_the_level_are_settings(hold: float) -> None:
+    assert events(launched(stroke_end_hold=hold))["stroke_end"] == pytest.approx(2.4 + 0.008 + hold, abs=0.0021)
+    never = computer(2.02, stroke_end_level_g=0.5)
+    feed(never, REST, 0.0, 2.0)
+    feed(never, 8.0 * G, 2.0, 2.4)
+    feed(never, 0.6 * G, 2.4, 4.0)
+    assert never.state == "stroke"
+
+
+def test_a_dip_shorter_than_the_hold_does_not_end_the_stroke() -> None:
+    box = computer(2.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, lambda t: -5.0 * G if 2.2 <= t < 2.22 else 8.0 * G, 2.0, 2.4)
+    assert box.state == "stroke"
+
+
+def test_ringing_does_not_end_the_stroke() -> None:
+    """±3 g at 120 Hz on a push of 3 g touches 0 in each period, but its mean over 10 ms stays above 1 g."""
+    box = computer(2.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, lambda t: 3.0 * G * (1.0 + math.sin(2.0 * math.pi * 120.0 * t)), 2.0, 3.0)
+    assert box.state == "stroke"
+
+
+# -- was it a launch? ------------------------------------------------------------------------------------------------
+
+
+def gained(box: FlightComputer) -> float:
+    (gain,) = (e["speed_gain"] for e in box.events if "speed_gain" in e)
+    return gain
+
+
+def test_speed_gained_is_the_integral_since_detection_less_the_rail_mean() -> None:
+    """Rectangles of 1 ms from the reading after the detection to the noticed end: exact sum."""
+    box = launched()
+    quiet = events(box)["stroke_end"] - 2.4
+    expected = (8.0 * G - REST) * 0.379 + (-1.0 - REST) * (quiet + 0.001)  # 2.021 … 2.399, then 2.400 … the end
+    assert gained(box) == pytest.approx(expected, abs=1e-6)
+
+
+def test_the_rail_mean_holds_nothing_of_the_stroke() -> None:
+    """Whenever the stroke begins within the blocks of half a second, the mean is that of the rest."""
+    for start in (1.70, 1.99, 2.0, 2.01, 2.3):
+        box = computer(start + 0.02)
+        feed(box, REST, 0.0, start)
+        feed(box, 8.0 * G, start, start + 0.2)
+        feed(box, REST, start + 0.2, start + 1.0)
+        assert gained(box) == pytest.approx((8.0 * G - REST) * 0.179, rel=1e-3)
+
+
+@pytest.mark.parametrize(("duration", "launch"), [(0.135, True), (0.130, False)])
+def test_ten_metres_a_second_make_a_launch(duration: float, launch: bool) -> None:
+    """8 g less the rail's 2.1 m/s²: 10 m/s take 0.131 s, one reading is without its interval, 0.09 m/s are lost after."""
+    box = computer(2.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.02 + duration)
+    feed(box, -1.0, 2.02 + duration, 6.0)
+    assert ("wings_commanded" in events(box)) is launch
+    assert ("not_a_launch" in events(box)) is not launch
+
+
+def test_after_a_knock_it_watches_again_a_second_later() -> None:
+    box = computer(1.018, 1.5, 3.02)  # 1.5 falls into the second in which it does not look
+    before = box.commands
+    feed(box, REST, 0.0, 1.0)
+    feed(box, 10.0 * G, 1.0, 1.06)
+    feed(box, REST, 1.06, 2.0)
+    assert box.state == "rearming"
+    box.detector.times = [3.02]  # type: ignore[attr-defined]
+    feed(box, REST, 2.0, 3.0)
+    assert box.state == "waiting"
+    assert box.commands is before
+    at = events(box)
+    assert at["rearmed"] - at["not_a_launch"] == pytest.approx(1.0, abs=0.0011)
+    assert box.detector.resets == 1  # type: ignore[attr-defined]
+    assert not [t for t in box.detector.seen if 1.02 < t <= at["rearmed"]]  # type: ignore[attr-defined]
+    feed(box, 8.0 * G, 3.0, 3.4)
+    feed(box, -1.0, 3.4, 5.0)
+    assert box.state == "flying"
+
+
+@pytest.mark.parametrize("delay", [0.2, 3.0])
+def test_the_delay_of_rearming_is_a_setting(delay: float) -> None:
+    box = computer(1.018, rearm_delay=delay)
+    feed(box, REST, 0.0, 1.0)
+    feed(box, 10.0 * G, 1.0, 1.06)
+    feed(box, REST, 1.06, 6.0)
+    at = events(box)
+    assert at["rearmed"] - at["not_a_launch"] == pytest.approx(delay, abs=0.0011)
+
+
+# -- bad readings ----------------------------------------------------------------------------------------------------
+
+
+def test_single_readings_that_are_no_numbers_change_little() -> None:
+    """One in five is NaN: the stroke still ends and counts as a launch; the gain is the integral over what is left."""
+    box = computer(2.02)
+    feed(box, lambda t: NAN if round(1000 * t) % 5 == 0 else REST, 0.0, 2.0)
+    feed(box, lambda t: NAN if round(1000 * t) % 5 == 0 else 8.0 * G, 2.0, 2.4)
+    feed(box, lambda t: NAN if round(1000 * t) % 5 == 0 else -1.0, 2.4, 4.0)
+    assert box.state == "flying"
+    assert gained(box) == pytest.approx(gained(launched()), rel=0.01)
+
+
+def test_nothing_but_nan_after_the_detection_opens_no_wing() -> None:
+    box = computer(2.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.03)
+    feed(box, NAN, 2.03, 10.0)
+    assert box.state == "stroke"
+    assert box.commands[0] == 0.0
+
+
+def test_nan_does_not_stop_a_timer_that_runs() -> None:
+    box = computer(2.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.4)
+    feed(box, -1.0, 2.4, 2.45)
+    assert box.state == "coasting"
+    feed(box, NAN, 2.45, 4.0)
+    assert box.state == "flying"
+
+
+def test_a_gap_adds_no_more_speed_than_its_longest_step() -> None:
+    """8 g at 2.1 s, nothing for 10 s, then the end: the gap counts as 20 ms, which makes no launch."""
+    box = computer(2.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.1)
+    box.accelerometer(12.1, 8.0 * G, 0.0, 0.0)
+    assert 0.079 + LONGEST_STEP < 10.0 / (8.0 * G)
+    feed(box, -1.0, 12.101, 14.0)
+    assert gained(box) == pytest.approx((8.0 * G - REST) * (0.079 + LONGEST_STEP), rel=0.02)
+    assert "not_a_launch" in events(box)
+
+
+def test_the_same_stroke_read_at_another_rate_gives_the_same() -> None:
+    box = FlightComputer(SETTINGS, Spotter(2.02), Oracle(), 500.0)
+    feed(box, REST, 0.0, 2.0, rate=500.0)
+    feed(box, 8.0 * G, 2.0, 2.4, rate=500.0)
+    feed(box, -1.0, 2.4, 4.0, rate=500.0)
+    other = launched()
+    assert gained(box) == pytest.approx(gained(other), rel=0.01)
+    assert events(box)["stroke_end"] == pytest.approx(events(other)["stroke_end"], abs=0.003)
+
+
+# -- cruise ----------------------------------------------------------------------------------------------------------
+
+SEA_LEVEL, AIR = 101_325.0, 288.15
+
+
+def reading(
+    box: FlightComputer, t: float, airspeed: float, *, height: float | None = None, valid: bool = True, air: float = AIR
+) -> Estimate | None:
+    """One reading whose estimate is this airspeed at this height above the first one, m."""
+    level = SETTINGS.height if height is None else height
+    static = SEA_LEVEL * math.exp(-level * G / (287.05 * AIR))
+    box.estimator.next = (t, airspeed, 0.1, airspeed, static, static, valid)  # type: ignore[attr-defined]
+    return box.air_data(t, static, static, air, t, t)
+
+
+def flying(**settings: float) -> FlightComputer:
+    """A computer in flight at 4 s, with its height known from a reading on the ground."""
+    box = computer(2.02, **settings)
+    reading(box, 0.5, 0.0, height=0.0, valid=False)
+    feed(box, REST, 0.51, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.4)
+    feed(box, -1.0, 2.4, 4.0)
+    assert box.state == "flying"
+    return box
+
+
+def throttle(box: FlightComputer) -> float:
+    return box.commands[1]
+
+
+def test_on_target_it_keeps_throttle_and_pitch_of_level_cruise() -> None:
+    box = flying()
+    for k in range(100):
+        reading(box, 4.0 + 0.01 * k, SETTINGS.airspeed)
+    assert throttle(box) == pytest.approx(SETTINGS.throttle_level, abs=0.01)
+    assert box.commands[2] == pytest.approx(math.radians(SETTINGS.level_pitch_deg), abs=1e-3)
+
+
+def test_throttle_is_proportional_plus_integral_on_the_estimate() -> None:
+    """Half a metre a second too slow for 1 s: level + K_p e, growing by K_i e a second; height on target."""
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed)  # the height's own share of pitch and throttle
+    start = throttle(box)
+    for k in range(101):
+        reading(box, 4.01 + 0.01 * k, SETTINGS.airspeed - 0.5)
+    expected = start + SETTINGS.throttle_gain * 0.5 + SETTINGS.throttle_rate * 0.5 * 1.0
+    assert throttle(box) == pytest.approx(expected, abs=1e-3)
+
+
+def test_too_fast_is_less_throttle() -> None:
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed + 1.0)
+    assert throttle(box) < SETTINGS.throttle_level - 0.9 * SETTINGS.throttle_gain
+
+
+@pytest.mark.parametrize(("airspeed", "stop"), [(5.0, 1.0), (80.0, 0.0)])
+def test_throttle_stays_between_its_stops_and_the_integral_does_not_wind_up(airspeed: float, stop: float) -> None:
+    """A minute against a stop leaves no trace: back on target the throttle is at once what it was."""
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed)
+    before = throttle(box)
+    for k in range(6000):
+        reading(box, 4.01 + 0.01 * k, airspeed)
+        assert throttle(box) == stop
+    reading(box, 64.02, SETTINGS.airspeed)
+    assert throttle(box) == pytest.approx(before, abs=1e-9)
+
+
+def test_too_low_climbs_and_too_high_descends_within_the_limits() -> None:
+    box = flying()
+    climb, level = math.radians(SETTINGS.climb_pitch_deg), math.radians(SETTINGS.level_pitch_deg)
+    reading(box, 4.0, SETTINGS.airspeed, height=SETTINGS.height - 2.0)
+    assert box.commands[2] == pytest.approx(level + 2.0 * SETTINGS.height_gain, rel=0.01)
+    reading(box, 4.01, SETTINGS.airspeed, height=SETTINGS.height + 2.0)
+    assert box.commands[2] == pytest.approx(level - 2.0 * SETTINGS.height_gain, rel=0.01)
+    reading(box, 4.02, SETTINGS.airspeed, height=-500.0)
+    assert box.commands[2] == pytest.approx(climb)
+    reading(box, 4.03, SETTINGS.airspeed, height=2000.0)
+    assert box.commands[2] == pytest.approx(2.0 * level - climb)
+
+
+def test_while_the_airspeed_is_to_be_gained_the_pitch_is_the_launchs() -> None:
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed - 2.0 * SETTINGS.speed_margin, height=0.0)
+    assert box.commands[2] <= math.radians(SETTINGS.launch_pitch_deg) + 1e-12
+
+
+@pytest.mark.parametrize("bad", [{"valid": False}, {"air": NAN}])
+def test_without_a_valid_estimate_the_commands_stay(bad: dict[str, Any]) -> None:
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed - 1.0)
+    before = box.commands
+    for k in range(100):
+        reading(box, 4.01 + 0.01 * k, 3.0, height=500.0, **bad)
+    assert box.commands is before
+
+
+def test_a_time_without_estimates_does_not_count_in_the_integral() -> None:
+    """After 10 s of silence one estimate 1 m/s too slow adds no more than 0.2 s of it."""
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed)
+    before = throttle(box)
+    reading(box, 14.0, SETTINGS.airspeed - 0.5)
+    reading(box, 14.0 + 1e-6, SETTINGS.airspeed)
+    assert throttle(box) - before <= SETTINGS.throttle_rate * 0.5 * 10 * LONGEST_STEP + 1e-4
+
+
+def test_before_the_motor_the_estimate_commands_nothing() -> None:
+    box = computer()
+    before = box.commands
+    for k in range(100):
+        assert reading(box, 0.01 * k, 25.0) is not None
+    assert box.commands is before
+
+
+def test_a_reading_that_gives_no_estimate_changes_nothing() -> None:
+    box = flying()
+    before = box.commands
+    box.estimator.next = None  # type: ignore[attr-defined]
+    assert box.air_data(5.0, SEA_LEVEL, SEA_LEVEL, AIR, 5.0, 5.0) is None
+    assert box.commands is before
+
+
+def test_height_is_counted_from_the_first_pressure() -> None:
+    """The launch site is 200 Pa below standard: the same climb above it gives the same pitch command."""
+    pitches = []
+    for site in (0.0, -200.0):
+        box = computer(2.02)
+        for t, height in ((0.5, 0.0), (4.0, 10.0)):
+            static = (SEA_LEVEL + site) * math.exp(-height * G / (287.05 * AIR))
+            box.estimator.next = (t, SETTINGS.airspeed, 0.1, 0.0, static, static, True)  # type: ignore[attr-defined]
+            if t > 1.0:
+                feed(box, REST, 0.51, 2.0)
+                feed(box, 8.0 * G, 2.0, 2.4)
+                feed(box, -1.0, 2.4, 4.0)
+            box.air_data(t, static, static, AIR, t, t)
+        pitches.append(box.commands[2])
+    assert pitches[0] == pytest.approx(pitches[1], abs=1e-5)
+    height = airdata.hypsometric_height(1e5 * math.exp(-10.0 * G / (287.05 * AIR)), 1e5, AIR)
+    expected = SETTINGS.height_gain * (SETTINGS.height - height)
+    assert pitches[0] == pytest.approx(math.radians(SETTINGS.level_pitch_deg) + expected, abs=1e-4)
+
+
+# -- with the real detector ------------------------------------------------------------------------------------------
+
+
+def test_a_knock_then_a_launch_with_the_detector_that_flies() -> None:
+    """10 g for 60 ms is recognised, is no launch, and does not keep the launch 3 s later from being recognised."""
+    box = FlightComputer(
+        SETTINGS,
+        MultiLevelWindow(trigger=45.11, threshold=45.11, samples=18, levels=4, ratio=0.8, max_gap=0.003),
+        Oracle(),
+        RATE,
+    )
+    feed(box, REST, 0.0, 1.0)
+    feed(box, 10.0 * G, 1.0, 1.06)
+    feed(box, REST, 1.06, 4.0)
+    feed(box, 8.0 * G, 4.0, 4.4)
+    feed(box, -1.0, 4.4, 6.0)
+    names = [e["event"] for e in box.events]
+    assert names == [
+        "launch_detected", "not_a_launch", "rearmed", "launch_detected", "stroke_end", "wings_commanded", "motor_on"
+    ]  # fmt: skip
+    times = [e["t"] for e in box.events]
+    assert times[0] == pytest.approx(1.017)
+    assert times[3] == pytest.approx(4.017)
