@@ -17,7 +17,11 @@ from uavsim.scenario import Scenario
 from uavsim.score import Judged, score
 from uavsim.studies.batch import Batch, ErrorTrace, _flat
 from uavsim.truth import STANDARD_GRAVITY
-from uavsim.views import batch, plots
+from uavsim.views import batch, launch, plots, trajectory
+from uavsim.views.curves import thin
+from uavsim.views.figure import PHASES, make_room, sheet
+from uavsim.views.marks import Mark, flags, stack
+from uavsim.views.record import Record
 
 RELEASE, END, PUSH = 2.0, 6.5, 76.0  # s, s, m/s^2 along the rail
 ALL = ["launch.png", "pressure.png", "airspeed.png", "trajectory.png"]
@@ -139,7 +143,7 @@ def test_without_truth_the_launch_is_the_detection_that_the_stroke_confirmed(fli
     recorded = without(flight, "truth")
     detected = flight.score["launch"]["detected_time"]
     events = [*knock, *recorded.events, {"t": detected + 0.4, "event": "stroke_end"}]
-    record = plots._Record(Flight(recorded.scenario, recorded.tables, events, recorded.score))
+    record = Record(Flight(recorded.scenario, recorded.tables, events, recorded.score))
     assert record.start == detected
     assert record.launch == pytest.approx((detected - 0.2, detected + 0.8))
     assert [mark.label for mark in record.milestones] == ["detected", "stroke end noticed", "wings commanded"]
@@ -160,7 +164,7 @@ def test_thinning_keeps_extremes_and_ends() -> None:
     y = rng.normal(size=t.size)
     y[12_345], y[23_456] = 40.0, -40.0
     y[100:160] = np.nan
-    few_t, few = plots.thin(t, y, 2000)
+    few_t, few = thin(t, y, 2000)
     assert few_t.size < 4000
     assert np.all(np.diff(few_t) > 0.0)
     assert (few_t[0], few_t[-1]) == (t[0], t[-1])
@@ -173,14 +177,14 @@ def test_thinning_keeps_extremes_and_ends() -> None:
 
 
 def test_labels_of_marks_never_cover_each_other_nor_cross_a_line() -> None:
-    figure, ((axes,),) = plots.sheet("title", "subtitle", (1.0,))
+    figure, ((axes,),) = sheet("title", "subtitle", (1.0,))
     axes.set_xlim(0.0, 10.0)
     rng = np.random.default_rng(5)
-    marks = [plots.Mark(float(t), "mark " * int(n)) for t, n in rng.uniform((-1.0, 1.0), (11.0, 4.0), (25, 2))]
-    placed = plots.stack(axes, marks)
+    marks = [Mark(float(t), "mark " * int(n)) for t, n in rng.uniform((-1.0, 1.0), (11.0, 4.0), (25, 2))]
+    placed = stack(axes, marks)
     assert {mark.t for mark, _, _ in placed} == {mark.t for mark in marks if 0.0 <= mark.t <= 10.0}
-    plots.make_room(figure, 1 + max(line for _, _, line in placed))
-    plots.flags([axes], placed)
+    make_room(figure, 1 + max(line for _, _, line in placed))
+    flags([axes], placed)
     figure.canvas.draw()
     boxes = [text.get_window_extent() for text in axes.texts]
     lines = [x for _, x, _ in placed]
@@ -194,7 +198,7 @@ def test_labels_of_marks_never_cover_each_other_nor_cross_a_line() -> None:
 
 
 def test_height_is_exaggerated_by_as_much_as_is_said(flight: Flight) -> None:
-    figure = plots._trajectory(plots._Record(flight))
+    figure = trajectory.draw(Record(flight))
     assert figure is not None
     for axes in figure.axes[:2]:
         words = axes.get_title(loc="right")
@@ -208,13 +212,13 @@ def test_height_is_exaggerated_by_as_much_as_is_said(flight: Flight) -> None:
 
 def path(axes: Axes) -> tuple[list[float], list[float]]:
     """Return the points of the trajectory."""
-    pairs = [line.get_data() for line in axes.lines if line.get_label() in ("rail", *plots.PHASES)]
+    pairs = [line.get_data() for line in axes.lines if line.get_label() in ("rail", *PHASES)]
     return [float(x) for pair in pairs for x in pair[0]], [float(y) for pair in pairs for y in pair[1]]
 
 
 def test_readings_and_truth_are_drawn_where_they_are(flight: Flight) -> None:
     """The curves are the tables' numbers, in the units that the axes name."""
-    figure = plots._launch(plots._Record(flight))
+    figure = launch.draw(Record(flight))
     assert figure is not None
     lines = {line.get_label(): line for line in figure.axes[0].lines}
     x, y = (np.asarray(values, float) for values in lines["$f_x$ measured"].get_data())

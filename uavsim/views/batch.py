@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from uavsim.flight import claim, unfinished, write_json
 from uavsim.studies.batch import ERROR_STEP, Batch
 from uavsim.studies.quantiles import ecdf_band, quantile_band
-from uavsim.views.plots import (
+from uavsim.views.figure import (
     BLACK,
     BLUE,
     GREY,
@@ -29,10 +29,10 @@ from uavsim.views.plots import (
     label,
     legend,
     make_room,
-    save_plots,
     sheet,
 )
-from uavsim.views.plots import save as save_figure
+from uavsim.views.figure import save as save_figure
+from uavsim.views.plots import save_plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
