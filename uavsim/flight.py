@@ -2,15 +2,16 @@
 
 A folder holds ``scenario.toml`` (resolved; flies again to the same result), ``score.json``, ``events.json`` (what the
 aircraft noticed and did, by its own clock), one Parquet file a table with the unit of each column in its field
-metadata, and ``plots/``. It is written under another name and renamed when it is whole.
+metadata, and ``plots/``. It is written under another name and takes its place when it is whole.
 """
 
 import json
 import os
+import secrets
 import shutil
-import tempfile
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -36,7 +37,12 @@ UNITS: dict[str, dict[str, str]] = {
     },
     "detector": {"t": "s", "level": "1", "count": "1", "total": "1", "triggered": "", "recognised": ""},
 }
-"""The tables of a flight: their columns and units, in order."""
+"""The tables of a flight: their columns and units, in order; what has no unit has an empty one."""
+
+OURS = {f"{table}.parquet" for table in (*UNITS, "runs")} | {
+    *("scenario.toml", "score.json", "events.json", "campaign.json", "report.html", "plots", "flights")
+}
+"""What is in the folders of flights and campaigns, and so is replaced when one is written again."""
 
 
 @dataclass(frozen=True)
@@ -105,14 +111,14 @@ class Flight:
         path
             Made with its parents; an empty folder counts as none.
         overwrite
-            Replace a folder that is not empty.
+            Into a folder that is not empty: replace what a flight or a campaign left there; other files stay.
         extra
             Called with the unfinished folder, to add to it (plots).
 
         Raises
         ------
-        FileExistsError
-            If there is something already and `overwrite` is false.
+        OSError
+            If there is something already and `overwrite` is false (FileExistsError), or it cannot be written.
         """
         target = Path(path)
         claim(target, overwrite=overwrite)
@@ -133,25 +139,45 @@ def load(path: str | os.PathLike[str]) -> Flight:
     Raises
     ------
     ValueError
-        If it is not one.
+        If it is not one, or is damaged; one line that names the file.
     """
+    folder = Path(path)
+    if not folder.is_dir():
+        raise ValueError(f"{folder} is not a flight's folder: there is no such folder")
+    scenario = _read(folder / "scenario.toml", tomllib.loads, dict)
+    events = _read(folder / "events.json", json.loads, list)
+    score = _read(folder / "score.json", json.loads, dict)
+    files = {name: folder / f"{name}.parquet" for name in UNITS}
+    return Flight(scenario, {n: _read_table(n, file) for n, file in files.items() if file.is_file()}, events, score)
+
+
+def _read(file: Path, parse: Callable[[str], Any], kind: type) -> Any:
+    try:
+        value = parse(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ValueError(f"{file.parent} is not a flight's folder: {file.name} is missing") from None
+    except OSError as error:
+        raise ValueError(f"{file} cannot be read: {error.strerror}") from None
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{file} is damaged: {error}") from None
+    if not isinstance(value, kind):
+        raise ValueError(  # noqa: TRY004 (what is wrong is the file)
+            f"{file} is not a flight's: it holds a {type(value).__name__}, not a {kind.__name__}"
+        )
+    return value
+
+
+def _read_table(name: str, file: Path) -> "pd.DataFrame":
     import pandas as pd  # noqa: PLC0415 (half a second that an import of uavsim need not cost)
 
-    folder = Path(path)
     try:
-        scenario = tomllib.loads((folder / "scenario.toml").read_text(encoding="utf-8"))
-        events = json.loads((folder / "events.json").read_text(encoding="utf-8"))
-        score = json.loads((folder / "score.json").read_text(encoding="utf-8"))
-        tables = {
-            name: pd.read_parquet(folder / f"{name}.parquet")
-            for name in UNITS
-            if (folder / f"{name}.parquet").is_file()
-        }
-    except FileNotFoundError as error:
-        raise ValueError(f"{folder} is not a flight's folder: {Path(error.filename).name} is missing") from None
-    except (tomllib.TOMLDecodeError, json.JSONDecodeError, UnicodeDecodeError, OSError) as error:
-        raise ValueError(f"{folder} cannot be read as a flight: {error}") from None
-    return Flight(scenario, tables, events, score)
+        table = pd.read_parquet(file)
+    except (ValueError, OSError) as error:  # pyarrow's own errors are both
+        raise ValueError(f"{file} cannot be read: {error}") from None
+    missing = [column for column in UNITS[name] if column not in table]
+    if missing:
+        raise ValueError(f"{file} is not a flight's: the column {missing[0]!r} is missing")
+    return table
 
 
 def frame(name: str, columns: "Mapping[str, np.ndarray]") -> "pd.DataFrame":
@@ -182,50 +208,81 @@ def frame_of_floats(name: str, values: list[float]) -> "pd.DataFrame":
 
 
 def claim(target: Path, *, overwrite: bool) -> None:
-    """Make sure that `target` may be written.
+    """Make sure that `target` may be written, by writing there and leaving nothing.
 
     Raises
     ------
-    FileExistsError
-        If it is a file, or a folder that is not empty and `overwrite` is false.
     OSError
-        If it cannot be written.
+        If it is a file, or a folder that is not empty and `overwrite` is false (FileExistsError), or it cannot be
+        written.
     """
-    if target.exists():
-        if not target.is_dir():
+    try:
+        if os.path.lexists(target) and not target.is_dir() and not target.is_symlink():
             raise FileExistsError(f"{target} is a file, not a folder")
-        if any(target.iterdir()) and not overwrite:
+        if target.is_dir() and any(target.iterdir()) and not overwrite:
             raise FileExistsError(f"{target} is not empty; choose another folder or give --overwrite")
-    anchor = target.absolute().parent
-    while not anchor.exists():
-        anchor = anchor.parent
-    if not anchor.is_dir() or not os.access(anchor, os.W_OK):
-        raise PermissionError(f"{target} cannot be written: {anchor} is not a writable folder")
+        place = unfinished(target)
+        place.__enter__()
+        place.discard()
+    except OSError as error:
+        if error.strerror is None:
+            raise
+        raise OSError(f"{target} cannot be written: {error.strerror}") from None
 
 
 class unfinished:  # noqa: N801 (a context manager reads as a word)
-    """A folder under another name that takes `target`'s place when the block ends well, and vanishes if not."""
+    """A folder that becomes `target` when the block ends well, and vanishes if not.
+
+    A new target appears whole, by one rename. One that exists keeps what is not of a flight or a campaign: it may be
+    somebody's home, the folder one stands in, or a mounted one that nobody can rename.
+    """
 
     def __init__(self, target: Path) -> None:
-        self.target = target.absolute()
+        self.target = Path(os.path.realpath(target))  # a link stays, and leads to what is written
 
     def __enter__(self) -> Path:
-        self.target.parent.mkdir(parents=True, exist_ok=True)
-        self.folder = Path(tempfile.mkdtemp(prefix=f".{self.target.name}-", dir=self.target.parent))
-        self.folder.chmod(0o755)
+        home = self.target if self.target.is_dir() else self.target.parent
+        self._made = [parent for parent in (home, *home.parents) if not parent.exists()]
+        self.folder = home / f".unfinished-{secrets.token_hex(4)}"
+        try:
+            self.folder.mkdir(parents=True)
+        except BaseException:
+            self.discard()
+            raise
         return self.folder
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        if kind is not None:
-            shutil.rmtree(self.folder, ignore_errors=True)
-            return
-        if self.target.exists():
-            old = self.folder.with_name(self.folder.name + "-old")
-            self.target.rename(old)
-            self.folder.rename(self.target)
-            shutil.rmtree(old)
-        else:
-            self.folder.rename(self.target)
+        try:
+            if kind is not None:
+                return
+            if self.target.is_dir():
+                self._move_in()
+            else:
+                self.folder.rename(self.target)
+                self._made = []
+        finally:
+            self.discard()
+
+    def _move_in(self) -> None:
+        """Take the place of what was written there before."""
+        new = list(self.folder.iterdir())
+        old = self.folder / ".old"
+        old.mkdir()
+        replaced = OURS | {entry.name for entry in new}
+        _move((entry for entry in list(self.target.iterdir()) if entry.name in replaced), old)
+        _move(new, self.target)
+
+    def discard(self) -> None:
+        """Remove the unfinished folder, and the parents that were made for it."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+        for parent in self._made:
+            with suppress(OSError):  # somebody else may use it by now
+                parent.rmdir()
+
+
+def _move(entries: Iterable[Path], folder: Path) -> None:
+    for entry in entries:
+        entry.rename(folder / entry.name)
 
 
 def write_table(path: Path, table: "pd.DataFrame", units: Mapping[str, str]) -> None:
@@ -234,10 +291,7 @@ def write_table(path: Path, table: "pd.DataFrame", units: Mapping[str, str]) -> 
     import pyarrow.parquet as pq  # noqa: PLC0415
 
     arrow = pa.Table.from_pandas(table, preserve_index=False)
-    fields = [
-        column.with_metadata({"unit": units[column.name]}) if units.get(column.name) else column
-        for column in arrow.schema
-    ]
+    fields = [column.with_metadata({"unit": units.get(column.name, "")}) for column in arrow.schema]
     pq.write_table(arrow.cast(pa.schema(fields, metadata=arrow.schema.metadata)), path)
 
 

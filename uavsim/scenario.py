@@ -1,35 +1,45 @@
 """What to fly: a scenario, read from TOML, validated against the settings that each room declares.
 
 A file holds only what differs from the defaults below. `--set KEY=VALUE` changes single keys after that. An unknown
-key is an error that names the nearest known one; bounds stand with each setting where it is declared.
+key is an error that names the nearest known one; bounds stand with each setting where it is declared, and what they
+cannot tell one by one is checked here.
 """
 
-import math
+import os
+import re
 import tomllib
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_type_hints
+from typing import Annotated, Any, Literal
 
+import numpy as np
 from annotated_types import Interval
 
 from sensors import AccelerometerSettings, AirDataSettings, VibrationSettings
-from uavsim.flight import without_none
+from uavsim import settings
+from uavsim.flight import UNITS, without_none
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.plants.hangar import find_aircraft
+from uavsim.plants.hangar import find_aircraft, hangar
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
+from uavsim.score import Judged, score
+from uavsim.settings import SettingError
 
 Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout"]
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
+PROPERTIES = "aircraft.properties."
+NAME = r"[^\W_][\w .+-]{0,99}"
+LARGEST_FILE = 1_000_000  # bytes; the largest packaged scenario has a thousandth of it
 
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A bound on a key of the score (joined by dots): `minimum` ≤ value ≤ `maximum`."""
+    """A bound on a number of the score (its keys joined by dots): `minimum` ≤ value ≤ `maximum`; null meets none."""
 
     key: str
     minimum: float | None = None
@@ -77,13 +87,12 @@ class Scenario:
         Raises
         ------
         ValueError
-            One line that names the key and what is allowed.
+            One line that names `where`, the key and what is allowed.
         """
-        _known_keys(values, cls, where)
-        _finite(values, where)
-        scenario = _validated(values, where)
-        _plausible(scenario, where)
-        return scenario
+        try:
+            return _checked(values)
+        except SettingError as error:
+            raise ValueError(f"{where}: {error.problem}") from None
 
     def to_dict(self) -> dict[str, Any]:
         """Nested plain values without the keys that hold None; `from_dict` takes them back."""
@@ -94,15 +103,15 @@ class Scenario:
         """The same scenario with other draws."""
         return Scenario.from_dict({**self.to_dict(), "seed": seed})
 
-    def renamed(self, name: str) -> "Scenario":
-        """The same scenario under another name."""
-        return replace(self, name=name)
-
 
 def packaged() -> dict[str, str]:
     """Names of the packaged scenarios and what they are."""
-    files = sorted(PACKAGED.glob("*.toml"))
-    return {file.stem: tomllib.loads(file.read_text(encoding="utf-8")).get("description", "") for file in files}
+    return {name: _parsed(PACKAGED / f"{name}.toml").get("description", "") for name in packaged_names()}
+
+
+def packaged_names() -> list[str]:
+    """Names of the packaged scenarios."""
+    return sorted(file.stem for file in PACKAGED.glob("*.toml"))
 
 
 def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: int | None = None) -> Scenario:
@@ -111,7 +120,7 @@ def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: in
     Parameters
     ----------
     source
-        A packaged name or the path of a TOML file.
+        A packaged name, the path of a TOML file, or a flight's folder.
     overrides
         ``KEY=VALUE`` each, with the key joined by dots and the value as TOML has it (quotes may be left out).
     seed
@@ -120,162 +129,239 @@ def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: in
     Raises
     ------
     ValueError
-        One line that names file, key and what is allowed.
+        One line that names the file or ``--set``, the key and what is allowed.
     """
     path = _find(source)
-    where = path.name if path.parent != PACKAGED else path.stem
+    where = path.stem if path.parent == PACKAGED else str(path)
+    values = {"name": path.stem, **_parsed(path)}
+    origins: dict[str, str] = {}
     try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path}: not valid TOML: {error}") from None
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
-    values.setdefault("name", path.stem)
-    _known_keys(values, Scenario, where)
-    for override in overrides:
-        _apply(values, override)
-    if seed is not None:
-        values["seed"] = seed
-    return Scenario.from_dict(values, where)
+        settings.read(Scenario, values)
+        for override in overrides:
+            origins[_apply(values, override)] = "--set"
+        if seed is not None:
+            values["seed"], origins["seed"] = seed, "--seed"
+        scenario = _checked(values)
+        _check_requirements(scenario)
+    except SettingError as error:
+        given = [origin for key in error.keys for k, origin in origins.items() if _within(k, key) or _within(key, k)]
+        raise ValueError(f"{[*given, where][0]}: {error.problem}") from None
+    return scenario
 
 
-def keys(kind: type = Scenario, prefix: str = "") -> list[str]:
+def _within(key: str, group: str) -> bool:
+    return f"{key}.".startswith(f"{group}.")
+
+
+def keys() -> list[str]:
     """Every key of a scenario, joined by dots."""
-    found: list[str] = []
-    for name, hint in _hints(kind).items():
-        if is_dataclass(hint):
-            found += keys(hint, f"{prefix}{name}.")  # type: ignore[arg-type]  # a class, not an instance
-        else:
-            found.append(prefix + name)
-    return found
+    return settings.keys(Scenario)
+
+
+# -- reading ---------------------------------------------------------------------------------------------------------
 
 
 def _find(source: str | Path) -> Path:
     name = str(source)
-    if (PACKAGED / f"{name}.toml").is_file() and "/" not in name:
+    if name in packaged_names():
         return PACKAGED / f"{name}.toml"
-    path = Path(source).expanduser()
-    if path.is_file():
-        return path
-    if path.is_dir() and (path / "scenario.toml").is_file():
+    path = Path(os.path.expanduser(name))  # os.path's, for pathlib's raise for unknown users and for long names
+    if name and os.path.isdir(path):
+        if not os.path.exists(path / "scenario.toml"):
+            raise ValueError(f"{name}: this folder holds no scenario.toml")
         return path / "scenario.toml"
-    known = [file.stem for file in sorted(PACKAGED.glob("*.toml"))]
-    near = get_close_matches(name, known, n=1, cutoff=0.3)
+    if name and os.path.exists(path):
+        return path
+    if "/" in name or name.endswith(".toml"):
+        raise ValueError(f"{name}: there is no such file")
+    near = get_close_matches(name, packaged_names(), n=1, cutoff=0.3)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    raise ValueError(f"unknown scenario {name!r}; {hint}packaged: {', '.join(known)}; or the path of a TOML file")
+    raise ValueError(
+        f"unknown scenario {name!r}; {hint}packaged: {', '.join(packaged_names())}; or the path of a TOML file"
+    )
 
 
-def _hints(kind: type) -> dict[str, Any]:
-    hints = get_type_hints(kind)
-    return {f.name: hints[f.name] for f in fields(kind)}
+def _parsed(path: Path) -> dict[str, Any]:
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            raise ValueError(f"{path}: not a scenario: larger than {LARGEST_FILE} bytes")
+        return tomllib.loads(content.decode("utf-8-sig"))
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: not a TOML file: it is not text in UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{path}: not valid TOML: {error}") from None
+    except RecursionError:
+        raise ValueError(f"{path}: not a scenario: nested too deep") from None
 
 
-def _known_keys(values: Mapping[str, Any], kind: type, where: str, prefix: str = "") -> None:
-    hints = _hints(kind)
-    for key, value in values.items():
-        if key not in hints:
-            raise ValueError(f"{where}: unknown key {prefix + key!r}{_nearest(prefix + key)}")
-        if is_dataclass(hints[key]):
-            if not isinstance(value, Mapping):
-                raise ValueError(f"{where}: {prefix}{key} is a group of keys, not a value ({value!r})")
-            _known_keys(value, hints[key], where, f"{prefix}{key}.")  # type: ignore[arg-type]
-
-
-def _nearest(key: str) -> str:
-    known = keys()
-    near = get_close_matches(key, known, n=1, cutoff=0.5)
-    if not near:  # a right name in the wrong group is the next most likely slip
-        last = key.rpartition(".")[2]
-        near = [k for k in known if k.rpartition(".")[2] == last][:1]
-    return f"; did you mean {near[0]!r}?" if near else f"; the groups are {', '.join(_hints(Scenario))}"
-
-
-def _finite(value: Any, where: str, key: str = "") -> None:
-    if isinstance(value, Mapping):
-        for name, item in value.items():
-            _finite(item, where, f"{key}.{name}" if key else name)
-    elif isinstance(value, list | tuple):
-        for item in value:
-            _finite(item, where, key)
-    elif isinstance(value, float) and not math.isfinite(value):
-        raise ValueError(f"{where}: {key} = {value}: must be a finite number")
-
-
-def _apply(values: dict[str, Any], override: str) -> None:
-    key, equals, text = override.partition("=")
-    key, text = key.strip(), text.strip()
+def _apply(values: dict[str, Any], override: str) -> str:
+    """Change one key; return it."""
+    key, equals, text = (part.strip() for part in override.partition("="))
     if not equals or not key:
         raise ValueError(f"--set {override!r}: give it as KEY=VALUE")
-    free = "aircraft.properties."  # its keys are JSBSim's names, which hold slashes and may hold dots
-    if key.startswith(free):
-        parts = ["aircraft", "properties", key.removeprefix(free)]
-    elif key in keys():
-        parts = key.split(".")
-    else:
-        raise ValueError(f"--set: unknown key {key!r}{_nearest(key)}")
-    try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        value = text
+    free = key.startswith(PROPERTIES)  # what follows is JSBSim's name, which holds slashes and may hold dots
+    if not free and key not in keys():
+        raise ValueError(f"--set: {settings.unknown(Scenario, key).problem}")
+    *groups, last = [*PROPERTIES.split(".")[:2], key.removeprefix(PROPERTIES)] if free else key.split(".")
     group = values
-    for part in parts[:-1]:
+    for part in groups:
         group = group.setdefault(part, {})
-    group[parts[-1]] = value
+    value = _value(text)
+    is_text = not free and settings.hint_of(Scenario, key) is str
+    group[last] = text if is_text and not isinstance(value, str) else value
+    return key
 
 
-def _validated(values: Mapping[str, Any], where: str) -> Scenario:
-    from pydantic import TypeAdapter, ValidationError  # noqa: PLC0415 (only when something is read)
-
+def _value(text: str) -> Any:
+    """Read a value as TOML has it; what is none is text."""
     try:
-        return TypeAdapter(Scenario).validate_python(dict(values))
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        key = ".".join(str(part) for part in first["loc"] if not _is_branch(str(part)))
-        message = first["msg"].removeprefix("Input ").removeprefix("Value error, ")
-        raise ValueError(f"{where}: {key} = {first['input']!r}: {message}") from None
+        found = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return found["value"] if list(found) == ["value"] else text
 
 
-def _is_branch(part: str) -> bool:
-    """Pydantic adds the tried member of a union to the location; a user has no such key."""
-    return "[" in part or part in {"float", "int", "str", "none"}
+# -- checking --------------------------------------------------------------------------------------------------------
 
 
-def _plausible(s: Scenario, where: str) -> None:
-    """What single bounds cannot tell."""
-    find_aircraft(s.aircraft.model)
+def _checked(values: Mapping[str, Any]) -> Scenario:
+    """Validate, and look at what single bounds cannot tell.
+
+    Raises
+    ------
+    SettingError
+        On the first thing that is wrong.
+    """
+    scenario = settings.read(Scenario, values)
+    for check in (_check_name, _check_times, _check_sensors, _check_detector):
+        check(scenario)
+    return _with_aircraft_found(scenario)
+
+
+def _check_name(s: Scenario) -> None:
+    if not re.fullmatch(NAME, s.name):
+        raise SettingError(
+            f"name = {s.name[:60]!r}: it names a folder, so it must begin with a letter or digit and go on with at "
+            "most 99 of those, spaces and .+-_",
+            "name",
+        )
+
+
+def _with_aircraft_found(s: Scenario) -> Scenario:
+    """The same with an own aircraft's path from the root, so that its record flies from anywhere."""
+    try:
+        folder = find_aircraft(s.aircraft.model)
+    except ValueError as error:
+        raise SettingError(f"aircraft.model: {error}", "aircraft.model") from None
+    for name in s.aircraft.properties:
+        if name.startswith("simulation/"):
+            raise SettingError(
+                f"{PROPERTIES}{name}: is a command to JSBSim itself, not a property of an aircraft", PROPERTIES + name
+            )
+    if folder.parent == hangar():
+        return s
+    return replace(s, aircraft=replace(s.aircraft, model=str(folder)))
+
+
+def _check_times(s: Scenario) -> None:
     launcher, air = s.launcher, s.air_data
     if launcher.wait_max < launcher.wait_min:
-        raise ValueError(
-            f"{where}: launcher.wait_max = {launcher.wait_max}: must be at least wait_min = {launcher.wait_min} s"
-        )
-    if air.tare == "covered" and air.tare_duration + air.cover_off > launcher.wait_min:
-        raise ValueError(
-            f"{where}: air_data.tare_duration = {air.tare_duration} and cover_off = {air.cover_off} s must fit into "
-            f"the shortest wait, launcher.wait_min = {launcher.wait_min} s"
+        raise SettingError(
+            f"launcher.wait_max = {launcher.wait_max:g}: must be at least wait_min = {launcher.wait_min:g} s",
+            "launcher.wait_max",
+            "launcher.wait_min",
         )
     if s.duration <= launcher.wait_max:
-        raise ValueError(f"{where}: duration = {s.duration}: must be longer than the wait, {launcher.wait_max} s")
-    _reachable(s, where)
+        raise SettingError(
+            f"duration = {s.duration:g}: must be longer than the longest wait, launcher.wait_max = "
+            f"{launcher.wait_max:g} s",
+            "duration",
+            "launcher.wait_max",
+        )
+    needed = {"covered": air.tare_duration + air.cover_off, "open": air.tare_duration, "none": 0.0}[air.tare]
+    if needed > launcher.wait_min:
+        cover = f" and cover_off = {air.cover_off:g}" if air.tare == "covered" else ""
+        raise SettingError(
+            f"air_data.tare_duration = {air.tare_duration:g}{cover} s: must fit into the shortest wait, "
+            f"launcher.wait_min = {launcher.wait_min:g} s",
+            "air_data.tare_duration",
+            "air_data.cover_off",
+            "launcher.wait_min",
+            "air_data.tare",
+        )
 
 
-def _reachable(s: Scenario, where: str) -> None:
-    """Refuse a threshold that the accelerometer can never show, and names or modes that do not exist."""
-    try:
-        part = s.accelerometer.description()
-        s.air_data.total.description()
-        s.air_data.static.description()
-    except ValueError as error:
-        raise ValueError(f"{where}: {error}") from None
-    extra = s.accelerometer.bias if isinstance(s.accelerometer.bias, tuple) else (s.accelerometer.bias,)
+def _check_sensors(s: Scenario) -> None:
+    """Refuse parts, ranges, rates and modes that do not exist."""
+    for key, part in (
+        ("accelerometer", s.accelerometer),
+        ("air_data.total", s.air_data.total),
+        ("air_data.static", s.air_data.static),
+    ):
+        try:
+            part.description()
+        except ValueError as error:
+            raise SettingError(f"{key}: {error}", key) from None
+    low, high = s.vibration.band_hz
+    if low >= high:
+        raise SettingError(f"vibration.band_hz = [{low:g}, {high:g}]: must be a band, low first", "vibration.band_hz")
+
+
+def _check_detector(s: Scenario) -> None:
+    """Refuse a threshold that the accelerometer can never be sure to show."""
+    threshold, trigger = s.detector.threshold, s.detector.trigger
+    key, level = ("threshold", threshold) if trigger is None else ("trigger", trigger)
+    if level < threshold:
+        raise SettingError(
+            f"detector.trigger = {level:g}: must be at least the threshold, {threshold:g} m/s²",
+            "detector.trigger",
+            "detector.threshold",
+        )
+    part = s.accelerometer.description()
+    own = s.accelerometer.bias if isinstance(s.accelerometer.bias, tuple) else (s.accelerometer.bias,)
     bias = max(min(3.0 * sd, limit) for sd, limit in zip(part.bias_sd, part.bias_limit, strict=True))
-    bias += max(abs(b) for b in extra)
+    bias += max(abs(b) for b in own)
     scale = min(3.0 * part.scale_sd, part.scale_limit)
     reach = part.range * (1.0 - scale) - bias - STANDARD_GRAVITY
-    trigger = s.detector.threshold if s.detector.trigger is None else s.detector.trigger
-    level = max(s.detector.threshold, trigger)
     if level >= reach:
-        raise ValueError(
-            f"{where}: detector.threshold = {level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show "
-            f"it; less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
-            f"{reach:.1f} m/s²"
+        raise SettingError(
+            f"detector.{key} = {level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; less "
+            f"1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
+            f"{reach:.1f} m/s²",
+            f"detector.{key}",
+            "accelerometer",
         )
+
+
+def _check_requirements(s: Scenario) -> None:
+    """Refuse a slip in a file; a record keeps what it was judged by, even if the score no longer has it."""
+    for i, r in enumerate(s.requirements):
+        where = f"requirements[{i}]"
+        if r.key not in figures():
+            near = get_close_matches(r.key, figures(), n=1, cutoff=0.5)
+            hint = f"; did you mean {near[0]!r}?" if near else "; see score.json for those there are"
+            raise SettingError(f"{where}.key = {r.key!r}: is no number of the score{hint}", "requirements")
+        if r.minimum is not None and r.maximum is not None and r.minimum > r.maximum:
+            raise SettingError(f"{where} ({r.key}): minimum is above maximum", "requirements")
+
+
+@cache
+def figures() -> tuple[str, ...]:
+    """Keys of the numbers that a score holds, joined by dots: those of a flight of one row."""
+    row = {name: np.zeros(1) for name in UNITS["truth"]}
+    tables = {"truth": row, **{name: {c: np.zeros(0) for c in UNITS[name]} for name in UNITS if name != "truth"}}
+    plain = Scenario().to_dict()
+    result = score(Judged(plain, tables, [], release_time=1.0, ended="completed", versions={}))
+    return tuple(key for key, value in _leaves(result, "") if not isinstance(value, str | list))
+
+
+def _leaves(value: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
+    for name, item in value.items():
+        if isinstance(item, Mapping):
+            yield from _leaves(item, f"{prefix}{name}.")
+        else:
+            yield prefix + name, item

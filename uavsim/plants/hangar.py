@@ -4,6 +4,7 @@ A wheel carries ``aircraft/`` as ``uavsim/aircraft``; in a checkout it lies besi
 is a folder with ``NAME/NAME.xml`` in it, named by its path.
 """
 
+import os
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -36,8 +37,8 @@ def find_aircraft(model: str) -> Path:
     ValueError
         If there is none; the message names the nearest packaged one.
     """
-    for folder in (hangar() / model, Path(model).expanduser()):
-        if model and (folder / f"{folder.name}.xml").is_file():
+    for folder in (hangar() / model, Path(os.path.expanduser(model))):  # os.path's do not raise for odd names
+        if model and os.path.isfile(folder / f"{folder.name}.xml"):
             return folder.resolve()
     known = aircraft()
     near = get_close_matches(model, known, n=1, cutoff=0.3)

@@ -1,0 +1,266 @@
+"""Settings from plain values, as a TOML file or a command line gives them, checked against their declarations.
+
+Settings are frozen dataclasses whose fields carry their bounds (`typing.Annotated`). Every key must be known, every
+value of the declared type and within its bounds; nothing is converted silently but whole numbers to numbers and lists
+to tuples. Whatever is wrong becomes one line that names the key, the value and what is allowed.
+"""
+
+import json
+import reprlib
+import types
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from difflib import get_close_matches
+from functools import cache
+from math import isfinite
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+T = TypeVar("T")
+Path = tuple[Any, ...]
+"""Keys, and numbers of entries of a list, from the outside in."""
+
+LARGEST = 2**63 - 1  # TOML 1.0: whole numbers have 64 bits
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = 60
+_WORDS = {float: "a number", int: "a whole number", str: "text", bool: "true or false"}
+
+
+class SettingError(Exception):
+    """A setting that cannot be.
+
+    Attributes
+    ----------
+    problem
+        One line: key, value, what is allowed.
+    keys
+        The keys concerned, joined by dots; several where they do not fit together.
+    """
+
+    def __init__(self, problem: str, *keys: str) -> None:
+        super().__init__(problem)
+        self.problem = " ".join(problem.split())
+        self.keys = keys
+
+
+class _OddError(Exception):
+    """Something that neither a number, nor text, nor a list, nor a group is, at a path."""
+
+
+def read(kind: type[T], values: Mapping[str, Any]) -> T:
+    """Make settings from nested plain values; keys that are left out keep their defaults.
+
+    Raises
+    ------
+    SettingError
+        On the first thing that is wrong.
+    """
+    from pydantic import ValidationError  # noqa: PLC0415 (only when something is read)
+
+    declared: Any = kind
+    _check_keys(values, declared, kind, "")
+    try:
+        plain = _plain(values, ())
+    except _OddError as odd:
+        raise _blame(kind, values, odd.args) from None
+    try:
+        # As JSON, because pydantic's strictness then takes a list for a tuple, but neither "3" nor true for a number.
+        found: T = _adapter(declared).validate_json(json.dumps(plain), strict=True)
+    except ValidationError as error:
+        raise _blame(kind, plain, error.errors(include_url=False)[0]["loc"]) from None
+    return found
+
+
+def keys(kind: Any, prefix: str = "") -> list[str]:
+    """Every key of nested settings, joined by dots."""
+    found: list[str] = []
+    for name, hint in hints(kind).items():
+        found += keys(hint, f"{prefix}{name}.") if _is_group(hint) else [prefix + name]
+    return found
+
+
+@cache
+def hints(kind: Any) -> dict[str, Any]:
+    """Types of a dataclass's fields, with their bounds."""
+    found = get_type_hints(kind, include_extras=True)
+    return {f.name: found[f.name] for f in fields(kind)}
+
+
+def hint_of(kind: type, key: str) -> Any:
+    """Declared type of a key that exists."""
+    hint: Any = kind
+    for part in key.split("."):
+        hint = hints(hint)[part]
+    return hint
+
+
+def unknown(kind: type, key: str) -> SettingError:
+    """Tell that a key does not exist, and the nearest one that does."""
+    known = keys(kind)
+    inside = [k.removeprefix(f"{key}.") for k in known if k.startswith(f"{key}.")]
+    if inside:
+        return SettingError(f"{key} is a group; its keys are {', '.join(inside)}", key)
+    near = get_close_matches(key, known, n=1, cutoff=0.5)
+    if not near:  # a right name in the wrong group is the next most likely slip
+        last = key.rpartition(".")[2]
+        near = [k for k in known if k.rpartition(".")[2] == last][:1]
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(hints(kind))}"
+    return SettingError(f"unknown key {_shown(key)}; {hint}", key)
+
+
+# -- from the outside in ---------------------------------------------------------------------------------------------
+
+
+@cache
+def _adapter(kind: Any) -> "TypeAdapter[Any]":
+    from pydantic import TypeAdapter  # noqa: PLC0415
+
+    return TypeAdapter(kind)
+
+
+def _is_group(hint: Any) -> bool:
+    return is_dataclass(hint)
+
+
+def _check_keys(values: Mapping[str, Any], kind: Any, root: type, prefix: str) -> None:
+    """Refuse keys that nobody declared: pydantic would pass over them."""
+    for name, value in values.items():
+        key = f"{prefix}{name}"
+        if name not in hints(kind):
+            raise unknown(root, key)
+        hint = hints(kind)[name]
+        entry = _entry(hint)
+        if _is_group(hint):
+            if not isinstance(value, Mapping):
+                raise SettingError(f"{key} = {_shown(value)}: must be a group of keys, not a value", key)
+            _check_keys(value, hint, root, f"{key}.")
+        elif _is_group(entry) and isinstance(value, list | tuple):
+            for i, item in enumerate(value):
+                _check_entry(item, entry, key, f"{key}[{i}]")
+
+
+def _check_entry(item: Any, kind: Any, key: str, where: str) -> None:
+    """Refuse keys that nobody declared in one of a list of groups."""
+    names = list(hints(kind))
+    if not isinstance(item, Mapping):
+        raise SettingError(f"{where} = {_shown(item)}: must be {_allowed(kind)}", key)
+    for name in item:
+        if name not in names:
+            near = get_close_matches(str(name), names, n=1, cutoff=0.0)[0]
+            raise SettingError(f"unknown key {_shown(name)} in {where}; did you mean {near!r}?", key)
+
+
+def _plain(value: Any, path: Path) -> Any:
+    """Return the same value of nothing but groups, lists, finite numbers and text."""
+    if isinstance(value, Mapping):
+        return {_name(name, path): _plain(item, (*path, name)) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item, (*path, i)) for i, item in enumerate(value)]
+    if value is None or isinstance(value, bool) or _is_text(value):
+        return value
+    if isinstance(value, Integral) and abs(int(value)) <= LARGEST:
+        return int(value)
+    if isinstance(value, Real) and not isinstance(value, Integral) and isfinite(value):
+        return float(value)
+    raise _OddError(*path)
+
+
+def _name(name: Any, path: Path) -> str:
+    if not _is_text(name):
+        raise SettingError(f"{_shown(name)} is no name", ".".join(map(str, path)))
+    return str(name)
+
+
+def _is_text(value: Any) -> bool:
+    """Whether it is text that UTF-8 can hold; a lone surrogate, from bytes that were no text, is not."""
+    return isinstance(value, str) and not any("\ud800" <= letter <= "\udfff" for letter in value)
+
+
+# -- one line --------------------------------------------------------------------------------------------------------
+
+
+def _blame(kind: Any, values: Any, path: Path) -> SettingError:
+    """Say what is wrong at a path; pydantic puts names of its own into it, which end the walk."""
+    hint, value, key, top = kind, values, "", ""
+    for part in path:
+        entry = _entry(hint)
+        if _is_group(hint) and part in hints(hint):
+            if part not in value:
+                return SettingError(f"{key}: {part} is missing", top)
+            hint, key = hints(hint)[part], f"{key}.{part}" if key else part
+            top = top if "[" in key else key
+        elif get_origin(hint) is dict and isinstance(value, Mapping) and part in value:
+            hint, key = get_args(hint)[1], f"{key}.{part}"
+        elif _is_group(entry) and isinstance(value, list | tuple) and isinstance(part, int):
+            hint, key = entry, f"{key}[{part}]"
+        else:
+            break
+        value = value[part]
+    return SettingError(f"{key} = {_shown(value)}: must be {_allowed(hint)}{_nearest(hint, value)}", top)
+
+
+def _shown(value: Any) -> str:
+    """Return the value, shortened; repr of a whole number of thousands of digits is refused by Python."""
+    try:
+        return _SHORT.repr(value)
+    except ValueError:
+        return "a number of thousands of digits"
+
+
+def _nearest(hint: Any, value: Any) -> str:
+    near = get_close_matches(value, list(_choices(hint)), n=1, cutoff=0.5) if isinstance(value, str) else []
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def _choices(hint: Any) -> Iterator[str]:
+    for item in get_args(hint):
+        if isinstance(item, str):
+            yield item
+        else:
+            yield from _choices(item)
+
+
+def _entry(hint: Any) -> Any:
+    """Return what a list holds, if all its entries are alike; None if it is no list."""
+    members = get_args(hint) if get_origin(hint) is tuple else ()
+    return members[0] if members and set(members[1:]) <= {members[0], Ellipsis} else None
+
+
+def _allowed(hint: Any) -> str:
+    """Say in words what a declared type allows."""
+    if _is_group(hint):
+        return f"a group of {_listed(list(hints(hint)), 'and')}"
+    origin, members = get_origin(hint), get_args(hint)
+    if origin is Annotated:
+        return " ".join(filter(None, (_allowed(members[0]), *map(_bounds, members[1:]))))
+    if origin is Literal:
+        return _listed([repr(choice) for choice in members])
+    if origin in (Union, types.UnionType):
+        return _listed([_allowed(member) for member in members if member is not type(None)])
+    if origin is tuple:
+        count = "" if Ellipsis in members else f" of {len(members)}"
+        return f"a list{count}, each {_allowed(members[0])}"
+    return "a group of NAME = number" if origin is dict else _WORDS[hint]
+
+
+def _bounds(bound: Any) -> str:
+    low, above, high, below = (getattr(bound, name, None) for name in ("ge", "gt", "le", "lt"))
+    if low is not None and high is not None:
+        return f"from {_number(low)} to {_number(high)}"
+    words = (("of at least", low), ("above", above), ("of at most", high), ("below", below))
+    found = [f"{word} {_number(value)}" for word, value in words if value is not None]
+    if getattr(bound, "min_length", None):
+        found.append(f"(at least {bound.min_length})")
+    return " and ".join(found)
+
+
+def _number(value: float) -> str:
+    return f"{value:d}" if isinstance(value, int) else f"{value:g}"
+
+
+def _listed(items: list[str], last: str = "or") -> str:
+    return f" {last} ".join(filter(None, (", ".join(items[:-1]), items[-1])))
