@@ -237,7 +237,7 @@ def test_every_row_is_in_one_phase_and_the_headline_is_over_all_three() -> None:
 
 def with_event(name: str, time: float | None) -> tuple[tuple[str, float], ...]:
     """Events of the plain flight with one at another time, or without it."""
-    return tuple((n, t if n != name else time) for n, t in EVENTS if n != name or time is not None)  # type: ignore[misc]
+    return tuple((n, t if n != name else time) for n, t in EVENTS if n != name or time is not None)
 
 
 @pytest.mark.parametrize(

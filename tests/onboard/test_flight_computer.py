@@ -116,8 +116,8 @@ def test_without_a_detection_nothing_is_commanded() -> None:
 
 def test_the_detector_is_not_asked_while_there_is_a_launch_to_follow() -> None:
     box = launched()
-    assert max(box.detector.seen) == pytest.approx(2.02)  # type: ignore[attr-defined]
-    assert box.detector.resets == 0  # type: ignore[attr-defined]
+    assert max(box.detector.seen) == pytest.approx(2.02)
+    assert box.detector.resets == 0
 
 
 # -- end of the stroke -----------------------------------------------------------------------------------------------
@@ -182,7 +182,7 @@ def test_the_rail_mean_holds_nothing_of_the_stroke() -> None:
 
 @pytest.mark.parametrize(("duration", "launch"), [(0.135, True), (0.130, False)])
 def test_ten_metres_a_second_make_a_launch(duration: float, launch: bool) -> None:
-    """8 g less the rail's 2.1 m/s²: 10 m/s take 0.131 s, one reading is without its interval, 0.09 m/s are lost after."""
+    """8 g less the rail's 2.1 m/s²: 10 m/s take 0.131 s, the first reading is without an interval."""
     box = computer(2.02)
     feed(box, REST, 0.0, 2.0)
     feed(box, 8.0 * G, 2.0, 2.02 + duration)
@@ -198,14 +198,14 @@ def test_after_a_knock_it_watches_again_a_second_later() -> None:
     feed(box, 10.0 * G, 1.0, 1.06)
     feed(box, REST, 1.06, 2.0)
     assert box.state == "rearming"
-    box.detector.times = [3.02]  # type: ignore[attr-defined]
+    box.detector.times = [3.02]
     feed(box, REST, 2.0, 3.0)
     assert box.state == "waiting"
     assert box.commands is before
     at = events(box)
     assert at["rearmed"] - at["not_a_launch"] == pytest.approx(1.0, abs=0.0011)
-    assert box.detector.resets == 1  # type: ignore[attr-defined]
-    assert not [t for t in box.detector.seen if 1.02 < t <= at["rearmed"]]  # type: ignore[attr-defined]
+    assert box.detector.resets == 1
+    assert not [t for t in box.detector.seen if 1.02 < t <= at["rearmed"]]
     feed(box, 8.0 * G, 3.0, 3.4)
     feed(box, -1.0, 3.4, 5.0)
     assert box.state == "flying"
@@ -286,7 +286,7 @@ def reading(
     """One reading whose estimate is this airspeed at this height above the first one, m."""
     level = SETTINGS.height if height is None else height
     static = SEA_LEVEL * math.exp(-level * G / (287.05 * AIR))
-    box.estimator.next = (t, airspeed, 0.1, airspeed, static, static, valid)  # type: ignore[attr-defined]
+    box.estimator.next = (t, airspeed, 0.1, airspeed, static, static, valid)
     return box.air_data(t, static, static, air, t, t)
 
 
@@ -393,7 +393,7 @@ def test_before_the_motor_the_estimate_commands_nothing() -> None:
 def test_a_reading_that_gives_no_estimate_changes_nothing() -> None:
     box = flying()
     before = box.commands
-    box.estimator.next = None  # type: ignore[attr-defined]
+    box.estimator.next = None
     assert box.air_data(5.0, SEA_LEVEL, SEA_LEVEL, AIR, 5.0, 5.0) is None
     assert box.commands is before
 
@@ -405,7 +405,7 @@ def test_height_is_counted_from_the_first_pressure() -> None:
         box = computer(2.02)
         for t, height in ((0.5, 0.0), (4.0, 10.0)):
             static = (SEA_LEVEL + site) * math.exp(-height * G / (287.05 * AIR))
-            box.estimator.next = (t, SETTINGS.airspeed, 0.1, 0.0, static, static, True)  # type: ignore[attr-defined]
+            box.estimator.next = (t, SETTINGS.airspeed, 0.1, 0.0, static, static, True)
             if t > 1.0:
                 feed(box, REST, 0.51, 2.0)
                 feed(box, 8.0 * G, 2.0, 2.4)
