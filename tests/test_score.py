@@ -117,6 +117,7 @@ def test_times_of_a_plain_flight() -> None:
     assert launch["detector"] == "multi-level-window"
     assert flight["rail_exit_time"] == EXIT
     assert flight["rail_exit_speed"] == pytest.approx(26.0)
+    assert flight["wing_start_time"] == pytest.approx(WINGS, abs=1.1e-3)
     assert flight["wing_out_time"] == pytest.approx(OUT)
     assert flight["duration"] == END
 

@@ -99,6 +99,11 @@ class Judged:
         return self._first(self.truth("rail_s") >= stroke, self.release_time)
 
     @cached_property
+    def wing_start_time(self) -> float | None:
+        """When the wing begins to open, s."""
+        return self._first(self.truth("wing") > 0.0, -np.inf)
+
+    @cached_property
     def wing_out_time(self) -> float | None:
         """When the wing is out, s."""
         return self._first(self.truth("wing") >= WING_OUT, -np.inf)
@@ -297,6 +302,7 @@ def _flight(flight: Judged) -> dict[str, Any]:
     return {
         "rail_exit_time": exit_time,
         "rail_exit_speed": None if exit_time is None else _number(np.interp(exit_time, time, speed)),
+        "wing_start_time": flight.wing_start_time,
         "wing_out_time": flight.wing_out_time,
         "cruise_airspeed": _number(cruise.mean()) if cruise.size else None,
         "cruise_airspeed_sd": _number(cruise.std()) if cruise.size else None,
