@@ -1,0 +1,73 @@
+"""Batches of flights that the longer checks share, and the figures that they measure, printed at the end of a run."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from uavsim.scenario import load_scenario
+from uavsim.studies.batch import Batch, fly_seeds
+
+Figure = Callable[..., None]
+WORKERS = 2
+_measured: list[str] = []
+
+
+@pytest.fixture
+def figure(request: pytest.FixtureRequest) -> Figure:
+    """Hold every value of a figure against its bounds; least, median and greatest go into the summary."""
+
+    def check(label: str, values: Sequence[float], unit: str = "", low: float = -np.inf, high: float = np.inf) -> None:
+        sample = np.asarray(values, dtype=float)
+        assert sample.size
+        found = f"{sample.min():.4g} … {np.median(sample):.4g} … {sample.max():.4g} {unit}".rstrip()
+        line = f"{label}: {found} ({sample.size} flights; asked {low:g} … {high:g})"
+        _measured.append(f"{request.node.name}: {line}")
+        assert np.isfinite(sample).all(), line
+        assert np.all((sample >= low) & (sample <= high)), line
+
+    return check
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Print what was measured: least … median … greatest."""
+    if _measured:
+        terminalreporter.section("measured: least … median … greatest")
+        for line in _measured:
+            terminalreporter.write_line(line)
+
+
+def flown(name: str, last: int, *overrides: str) -> Batch:
+    """Fly a packaged scenario with seeds 1 … last."""
+    return fly_seeds(load_scenario(name, overrides=overrides), list(range(1, last + 1)), workers=WORKERS)
+
+
+@pytest.fixture(scope="session")
+def catapult_50() -> Batch:
+    return flown("catapult", 50)
+
+
+@pytest.fixture(scope="session")
+def gusty_20() -> Batch:
+    return flown("gusty", 20)
+
+
+@pytest.fixture(scope="session")
+def strong_20() -> Batch:
+    return flown("strong-launch", 20)
+
+
+@pytest.fixture(scope="session")
+def rough_20() -> Batch:
+    return flown("rough-rail", 20)
+
+
+@pytest.fixture(scope="session")
+def weak_20() -> Batch:
+    return flown("weak-launch", 20)
+
+
+@pytest.fixture(scope="session")
+def weak_with_6_g_20() -> Batch:
+    return flown("weak-launch", 20, "launcher.peak_specific_force_g=6", "expect=cruise")
