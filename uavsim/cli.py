@@ -1,9 +1,12 @@
 """The command line: parses, calls, prints. No physics."""
 
-import os
+import io
+import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -11,10 +14,16 @@ import typer
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+    from uavsim.cosim import Cosimulation
     from uavsim.flight import Flight
+    from uavsim.scenario import Scenario
     from uavsim.studies.batch import Batch
 
 DONE, UNEXPECTED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+PATIENCE = 1.0  # s without a progress bar
+MOST_FLIGHTS = 100_000
+LARGEST_SEED = 2**63 - 1
 
 app = typer.Typer(
     add_completion=False,
@@ -22,11 +31,25 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-_UsageError = typer.BadParameter.__mro__[2]  # click's ClickException, wherever this typer keeps its click
+# click's ClickException, wherever this typer keeps its click
+_UsageError: type[Exception] = typer.BadParameter.__mro__[2]
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder to write; made with its parents.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace a folder that is not empty.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the flight or flights that --out holds.")]
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw no plots.")]
+
+
+class _WrongInputError(Exception):
+    """Something that the user gave and that cannot be; one line."""
+
+
+@contextmanager
+def _input(where: str = "") -> Iterator[None]:
+    """Count a ValueError of what reads or checks input as the user's; any other is a bug of ours and shows itself."""
+    try:
+        yield
+    except ValueError as error:
+        raise _WrongInputError(f"{where}{error}") from error
 
 
 @app.callback(invoke_without_command=True)
@@ -37,8 +60,15 @@ def uavsim(
 
     Launch detector and airspeed estimator are in the loop, everything is scored against the truth.
 
-    Example: uavsim fly catapult --seed 7
-    """
+    \b
+    Examples:
+      uavsim scenarios
+      uavsim fly catapult --seed 7
+      uavsim fly gusty --seeds 1-50 --out output/gusty-50
+      uavsim replay output/catapult-7
+      uavsim sensors bmp390
+      uavsim bench
+    """  # noqa: D301 (click reads \b: keep these lines)
     if version:
         from uavsim import __version__  # noqa: PLC0415 (each command loads only what it needs)
 
@@ -63,7 +93,8 @@ def scenarios() -> None:
 
 @app.command()
 def fly(
-    scenario: Annotated[str, typer.Argument(help="A packaged name or a TOML file.")] = "catapult",
+    scenario: Annotated[str, typer.Argument(help="A packaged name, a TOML file or a flight's folder.")] = "catapult",
+    *,
     seed: Annotated[int | None, typer.Option(help="Draws sensors, clocks, wait, wind and force.")] = None,
     seeds: Annotated[str | None, typer.Option(help="Several flights: 1-50 or 1,5,9.")] = None,
     out: Out = None,
@@ -83,41 +114,60 @@ def fly(
 
     if seed is not None and seeds is not None:
         raise typer.BadParameter("give --seed or --seeds, not both")
-    numbers = None if seeds is None else _seeds(seeds)
-    loaded = load_scenario(scenario, overrides=settings or (), seed=numbers[0] if numbers else seed)
-    target = _target(out, f"{loaded.name}-{seeds or loaded.seed}", overwrite=overwrite)
-    if numbers is None:
-        _fly_one(loaded, target, plots=not no_plots, overwrite=overwrite)
+    numbers = [] if seeds is None else _seeds(seeds)
+    with _input():
+        loaded = load_scenario(scenario, overrides=settings or (), seed=numbers[0] if numbers else seed)
+
+    def place() -> Path:
+        return _place(out, f"{loaded.name}-{_named(numbers) or loaded.seed}", overwrite=overwrite)
+
+    place()  # before anything is flown in vain
+    simulation = _ready(loaded, settings or ())
+    if numbers:
+        _fly_many(loaded, numbers, place, plots=not no_plots, overwrite=overwrite)
     else:
-        _fly_many(loaded, numbers, target, plots=not no_plots, overwrite=overwrite)
+        _fly_one(simulation, place, plots=not no_plots, overwrite=overwrite)
 
 
-def _fly_one(scenario: Any, target: Path, *, plots: bool, overwrite: bool) -> None:
-    from uavsim.cosim import fly as fly_scenario  # noqa: PLC0415
+def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation":
+    """Set a flight up: only JSBSim knows whether an aircraft has the properties that are asked for."""
+    from uavsim.cosim import Cosimulation  # noqa: PLC0415
+
+    where = "--set" if any(g.strip().startswith("aircraft.") for g in given) else scenario.name
+    with _input(f"{where}: "):
+        return Cosimulation(scenario)
+
+
+def _fly_one(simulation: "Cosimulation", place: Callable[[], Path], *, plots: bool, overwrite: bool) -> None:
+    from uavsim.cosim import CHUNK  # noqa: PLC0415
     from uavsim.views import terminal  # noqa: PLC0415
 
-    with _progress() as bar:
-        task = bar.add_task(f"flying {scenario.name}, seed {scenario.seed}", total=1.0)
-        flight = fly_scenario(scenario, progress=lambda share: bar.update(task, completed=share))
+    with _Bar(f"flying {simulation.scenario.name}, seed {simulation.scenario.seed}") as bar:
+        while not simulation.ended:
+            simulation.advance(CHUNK)
+            bar.show(simulation.plant.k / simulation.steps)
+    flight = simulation.finish()
+    written = flight.save(place(), overwrite=overwrite, extra=_plotter(flight) if plots else None)
     terminal.print_score(flight)
-    flight.save(target, overwrite=overwrite, extra=_plotter(flight) if plots else None)
-    typer.echo(f"written to {target}")
+    terminal.say(f"written to {written}")
     _leave(_as_expected(flight.score))
 
 
-def _fly_many(scenario: Any, numbers: list[int], target: Path, *, plots: bool, overwrite: bool) -> None:
+def _fly_many(
+    scenario: "Scenario", numbers: list[int], place: Callable[[], Path], *, plots: bool, overwrite: bool
+) -> None:
     from uavsim.studies.batch import fly_seeds  # noqa: PLC0415
     from uavsim.views import batch as view  # noqa: PLC0415
     from uavsim.views import terminal  # noqa: PLC0415
 
-    with _progress() as bar:
-        task = bar.add_task(f"flying {scenario.name}", total=len(numbers))
-        flown = fly_seeds(scenario, numbers, progress=lambda done, _: bar.update(task, completed=done))
+    with _Bar(f"flying {scenario.name}") as bar:
+        flown = fly_seeds(scenario, numbers, progress=lambda done, all_: bar.show(done / all_))
     if not len(flown.runs):
         raise KeyboardInterrupt
+    written = place()
+    view.save(flown, written, overwrite=overwrite, plots=plots)
     terminal.print_batch(flown)
-    view.save(flown, target, overwrite=overwrite, plots=plots)
-    typer.echo(f"written to {target}")
+    terminal.say(f"written to {written}")
     if not flown.complete:
         typer.echo(f"interrupted: {len(flown.runs)} of {len(numbers)} flights are kept", err=True)
         raise typer.Exit(INTERRUPTED)
@@ -131,7 +181,7 @@ def replay(
     no_plots: NoPlots = False,
     overwrite: Overwrite = False,
 ) -> None:
-    """Feed a flight's own readings through the same onboard code again.
+    """Run the onboard code again over a flight's own readings.
 
     Its events and estimate.parquet come out byte for byte.
 
@@ -139,20 +189,29 @@ def replay(
     """
     from uavsim.cosim import replay as replay_flight  # noqa: PLC0415
     from uavsim.flight import load  # noqa: PLC0415
+    from uavsim.scenario import Scenario  # noqa: PLC0415
     from uavsim.views import terminal  # noqa: PLC0415
 
-    target = _target(out, f"{flight.resolve().name}-replay", overwrite=overwrite)
-    again = replay_flight(load(flight))
+    name = f"{flight.resolve().name}-replay"
+    with _input():
+        recorded = load(flight)
+        Scenario.from_dict(recorded.scenario, str(flight / "scenario.toml"))
+        missing = [table for table in ("accelerometer", "air_data", "truth") if table not in recorded.tables]
+        if missing:
+            raise ValueError(f"{flight} cannot be replayed: {missing[0]}.parquet is missing")
+    _place(out, name, overwrite=overwrite)
+    again = replay_flight(recorded)
+    target = _place(out, name, overwrite=overwrite)
+    written = again.save(target, overwrite=overwrite, extra=None if no_plots else _plotter(again))
     terminal.print_score(again)
-    again.save(target, overwrite=overwrite, extra=_plotter(again) if not no_plots else None)
-    typer.echo(f"written to {target}")
+    terminal.say(f"written to {written}")
 
 
 @app.command()
 def sensors(
     name: Annotated[str | None, typer.Argument(help="A preset; without it all are listed.")] = None,
 ) -> None:
-    """List the sensor presets, or show one with its values, units and sources.
+    """List the sensor presets, or show one with its sources.
 
     Example: uavsim sensors bmp390
     """
@@ -161,25 +220,26 @@ def sensors(
     if name is None:
         terminal.print_presets()
     else:
-        terminal.print_preset(name)
+        with _input():
+            terminal.print_preset(name)
 
 
 @app.command()
 def bench(
     scenario: Annotated[str, typer.Argument(help="A packaged name or a TOML file.")] = "catapult",
 ) -> None:
-    """Measure what a step costs: in the loop, over the same JSBSim with the same truth recorded.
+    """Measure what a step in the loop costs, over bare JSBSim.
 
-    The last line is `ratio X.XX`. Example: uavsim bench
+    That is over the same JSBSim stepped from Python with the same truth recorded. The last line is `ratio X.XX`.
+
+    Example: uavsim bench
     """
     from uavsim.scenario import load_scenario  # noqa: PLC0415
     from uavsim.studies.cost import measure  # noqa: PLC0415
     from uavsim.views import terminal  # noqa: PLC0415
 
-    loaded = load_scenario(scenario)
-    with _progress() as bar:
-        task = bar.add_task("measuring", total=1.0)
-        cost = measure(loaded, progress=lambda share: bar.update(task, completed=share))
+    with _input(), _Bar("measuring") as bar:
+        cost = measure(load_scenario(scenario), progress=bar.show)
     terminal.print_cost(cost)
 
 
@@ -190,28 +250,38 @@ def _seeds(text: str) -> list[int]:
     """Seeds from `1-50` or `1,5,9-12`."""
     numbers: list[int] = []
     for part in text.split(","):
-        first, dash, last = part.strip().partition("-")
-        if not first.isdigit() or (dash and not last.isdigit()) or (dash and int(last) < int(first)):
-            raise typer.BadParameter(f"{text!r}: give seeds as 1-50 or 1,5,9", param_hint="--seeds")
-        numbers += range(int(first), int(last or first) + 1)
+        match = re.fullmatch(r"([0-9]{1,19})(?:-([0-9]{1,19}))?", part.strip())
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (0, -1)
+        if last < first or last > LARGEST_SEED:
+            raise typer.BadParameter(
+                f"{text[:40]!r}: give seeds as 1-50 or 1,5,9, from 0 to {LARGEST_SEED}", param_hint="--seeds"
+            )
+        if last - first >= MOST_FLIGHTS - len(numbers):
+            raise typer.BadParameter(f"{text[:40]!r}: more than {MOST_FLIGHTS} flights", param_hint="--seeds")
+        numbers += range(first, last + 1)
     if len(set(numbers)) != len(numbers):
-        raise typer.BadParameter(f"{text!r} names a seed twice", param_hint="--seeds")
+        raise typer.BadParameter(f"{text[:40]!r} names a seed twice", param_hint="--seeds")
     return numbers
 
 
-def _target(out: Path | None, name: str, *, overwrite: bool) -> Path:
+def _named(numbers: list[int]) -> str:
+    """Name several seeds in a folder's name."""
+    if len(numbers) > 1 and numbers == list(range(numbers[0], numbers[-1] + 1)):
+        return f"{numbers[0]}-{numbers[-1]}"
+    listed = ",".join(map(str, numbers))
+    return listed if len(listed) <= 40 else f"{len(numbers)}-seeds"
+
+
+def _place(out: Path | None, name: str, *, overwrite: bool) -> Path:
     """Folder to write: the one asked for, or a free one below `output/`."""
     from uavsim.flight import claim  # noqa: PLC0415
 
-    if out is not None:
-        claim(out, overwrite=overwrite)
-        return out
-    candidate, number = Path("output") / name, 1
-    while candidate.exists() and (not candidate.is_dir() or any(candidate.iterdir())):
+    target, number = out or Path("output") / name, 1
+    while out is None and target.exists() and (not target.is_dir() or any(target.iterdir())):
         number += 1
-        candidate = Path("output") / f"{name}-{number}"
-    claim(candidate, overwrite=False)
-    return candidate
+        target = Path("output") / f"{name}-{number}"
+    claim(target, overwrite=overwrite and out is not None)
+    return target
 
 
 def _plotter(flight: "Flight") -> Callable[[Path], None]:
@@ -223,12 +293,37 @@ def _plotter(flight: "Flight") -> Callable[[Path], None]:
     return draw
 
 
-def _progress() -> "Progress":
-    from rich.console import Console  # noqa: PLC0415
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+class _Bar:
+    """A progress bar on standard error, for what takes longer than a second and is watched on a terminal."""
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    return Progress(*columns, console=Console(stderr=True), transient=True)
+    def __init__(self, what: str) -> None:
+        self._what = what
+        self._since = monotonic()
+        self._progress: Progress | None = None
+
+    def __enter__(self) -> "_Bar":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._progress is not None:
+            self._progress.stop()
+
+    def show(self, share: float) -> None:
+        """Show that `share`, 0 … 1, is done."""
+        if self._progress is None and sys.stderr.isatty() and monotonic() - self._since > PATIENCE:
+            self._progress = self._start()
+        if self._progress is not None:
+            self._progress.update(self._progress.task_ids[0], completed=share)
+
+    def _start(self) -> "Progress":
+        from rich.console import Console  # noqa: PLC0415
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+
+        columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+        progress = Progress(*columns, console=Console(stderr=True), transient=True)
+        progress.add_task(self._what, total=1.0)
+        progress.start()
+        return progress
 
 
 def _as_expected(score: dict[str, Any]) -> bool:
@@ -246,16 +341,22 @@ def _leave(as_expected: bool) -> None:
 
 def main() -> None:
     """Run the command line; every error of the user's is one line on standard error and status 2."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without Greek is no reason to fail
     try:
         status = app(standalone_mode=False)
+        sys.stdout.flush()
     except (typer.Abort, KeyboardInterrupt):
         status = INTERRUPTED
     except _UsageError as error:
         status = _complain(error.format_message())  # type: ignore[attr-defined]  # the class is known at run time only
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        from uavsim.views.terminal import mute  # noqa: PLC0415
+
+        mute()
         status = DONE
-    except (ValueError, OSError) as error:
+    except (_WrongInputError, OSError) as error:
         status = _complain(str(error))
     sys.exit(status if isinstance(status, int) else DONE)
 

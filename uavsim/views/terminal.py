@@ -1,9 +1,17 @@
-"""Tables for the terminal: a flight's score, several flights, sensor presets, the cost of a step. Units everywhere."""
+"""Tables for the terminal: a flight's score, several flights, sensor presets, the cost of a step. Units everywhere.
 
+All fit into 80 columns and are the same lines in a pipe; colours are for terminals that want them.
+"""
+
+import os
+import sys
 import tomllib
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
+from rich import box
+from rich.console import Console, RenderableType
+from rich.markup import escape
 from rich.table import Table
 
 from uavsim.views.notes import notes
@@ -12,160 +20,250 @@ if TYPE_CHECKING:
     from uavsim.flight import Flight
     from uavsim.studies.batch import Batch
     from uavsim.studies.cost import Cost
+    from uavsim.studies.quantiles import QuantileBand
 
-QUANTILES = (0.05, 0.25, 0.50, 0.75, 0.95)
+NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
+QUANTILES = {"5 %": 0.05, "median": 0.50, "95 %": 0.95}
+
+PRESET_UNITS = {
+    "ranges_g": "g",
+    "default_range_g": "g",
+    "rates": "Hz",
+    "default_rate": "Hz",
+    "bits": "bit",
+    "noise_density_ug": "µg/√Hz",
+    "noise_rate_floor": "Hz",
+    "offset_mg": "mg",
+    "offset_limit_mg": "mg",
+    "scale_percent": "%",
+    "scale_limit_percent": "%",
+    "drift_ug": "µg",
+    "correlation_time": "s",
+    "random_walk_ug": "µg/√s",
+    "range_pa": "Pa",
+    "reference_pressure_pa": "Pa",
+    "offset_pa": "Pa",
+    "offset_limit_pa": "Pa",
+    "rate_percent": "%",
+    "rate_limit_percent": "%",
+    "drift_pa": "Pa",
+    "random_walk_pa": "Pa/√s",
+    "temperature_offset_k": "K",
+    "temperature_offset_limit_k": "K",
+    "temperature_resolution_k": "K",
+    "noise_pa": "Pa",
+    "resolution_pa": "Pa",
+    "temperature_noise_k": "K",
+    "conversion_ms": "ms",
+    "rate": "Hz",
+}
+"""Units of a datasheet's values; the others have none."""
+
+_SUFFIXES = ("_g", "_ug", "_mg", "_percent", "_pa", "_k", "_ms")
+
+
+class _Console(Console):
+    """Standard output that outlives its reader, as in `uavsim fly | head -1`."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+        mute()
+
+
+def mute() -> None:
+    """Send what is still printed nowhere: its reader has gone."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def say(text: str) -> None:
+    """Print one line as it is."""
+    _console().print(escape(text), soft_wrap=True)
+
+
+def _console() -> Console:
+    console = _Console(highlight=False)
+    console.width = max(NARROWEST, min(console.width, WIDEST))
+    return console
+
+
+def _print(console: Console, *parts: RenderableType) -> None:
+    """Print tables within the width, and text in lines of its own that only a reader may break."""
+    for part in parts:
+        console.print(part, soft_wrap=isinstance(part, str))
+
+
+def _table(columns: Iterable[str]) -> Table:
+    """Make a table whose first column is text and whose others are numbers."""
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    for i, name in enumerate(columns):
+        table.add_column(name, justify="right" if i else "left", no_wrap=True)
+    return table
 
 
 def _number(value: Any, digits: int = 3) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
 
 
-def _console() -> Console:
-    return Console(highlight=False, soft_wrap=True)
+def _milli(value: float | None) -> float | None:
+    return None if value is None else 1e3 * value
 
 
-def _table(title: str, *columns: str) -> Table:
-    table = Table(title=title, title_justify="left", title_style="bold", header_style="", pad_edge=False)
-    table.add_column(columns[0])
-    for column in columns[1:]:
-        table.add_column(column, justify="right")
-    return table
+# -- one flight ------------------------------------------------------------------------------------------------------
 
 
 def print_score(flight: "Flight") -> None:
     """Print a flight's score with its units, the requirements, and what deserves a remark."""
     score, console = flight.score, _console()
-    verdict = "as expected" if score["outcome"] == score["expected"] else f"expected {score['expected']}"
-    name = flight.scenario["name"]
-    console.print(f"\n[bold]{name}[/bold], seed {score['seed']}: [bold]{score['outcome']}[/bold] ({verdict})\n")
-    console.print(_launch_table(score))
-    console.print(_airspeed_table(score["airspeed"]))
-    console.print(_pressure_table(score["pressure"]))
+    right = score["outcome"] == score["expected"]
+    verdict = "as expected" if right else f"expected: {score['expected']}"
+    outcome = f"[bold {'green' if right else 'red'}]{score['outcome']}[/]"
+    head = f"\n[bold]{escape(flight.scenario['name'])}[/bold], seed {score['seed']}: {outcome} ({verdict})\n"
+    _print(console, head, _launch_table(score), "", _airspeed_table(score["airspeed"]), "")
+    _print(console, _pressure_table(score["pressure"]), "")
     if score["requirements"]:
-        console.print(_requirements_table(score["requirements"]))
+        _print(console, _requirements_table(score["requirements"]), "")
     for note in notes(flight):
-        console.print(f"Note: {note}")
+        console.print(f"Note: {escape(note)}")
 
 
 def _launch_table(score: dict[str, Any]) -> Table:
     launch, flight = score["launch"], score["flight"]
-    table = _table("Launch and flight", "", "value", "unit")
-    for label, value, unit, digits in (
-        ("release", launch["release_time"], "s", 3),
-        ("true launch (1 mm along the rail)", launch["true_time"], "s", 3),
-        ("true f_x above 4.5 g", launch["crossing_time"], "s", 3),
-        ("launch detected", launch["detected_time"], "s", 4),
-        ("latency from true launch", _milli(launch["latency"]), "ms", 1),
-        ("latency from crossing", _milli(launch["latency_from_crossing"]), "ms", 1),
-        ("false detections before release", launch["false_detections"], "", 0),
-        ("last shoe leaves the rail", flight["rail_exit_time"], "s", 3),
-        ("true airspeed there", flight["rail_exit_speed"], "m/s", 2),
-        ("wing out", flight["wing_out_time"], "s", 3),
-        ("mean true airspeed in cruise", flight["cruise_airspeed"], "m/s", 2),
-        ("its standard deviation", flight["cruise_airspeed_sd"], "m/s", 2),
-        ("lowest altitude after the rail", flight["lowest_altitude_after_exit"], "m", 2),
-        ("altitude at its end", flight["rail_exit_altitude"], "m", 2),
-        ("flown", flight["duration"], "s", 1),
-    ):
-        table.add_row(label, _number(value, digits), unit)
+    left = (
+        ("release", _number(launch["release_time"]), "s"),
+        ("true launch, 1 mm moved", _number(launch["true_time"]), "s"),
+        ("true f_x above 4.5 g", _number(launch["crossing_time"]), "s"),
+        ("launch detected", _number(launch["detected_time"], 4), "s"),
+        ("latency", _number(_milli(launch["latency"]), 1), "ms"),
+        ("  from the 4.5 g on", _number(_milli(launch["latency_from_crossing"]), 1), "ms"),
+        ("false detections", _number(launch["false_detections"], 0), ""),
+        ("flown", _number(flight["duration"], 1), "s"),
+    )
+    right = (
+        ("last shoe off the rail", _number(flight["rail_exit_time"]), "s"),
+        ("  true airspeed there", _number(flight["rail_exit_speed"], 2), "m/s"),
+        ("  altitude there", _number(flight["rail_exit_altitude"], 2), "m"),
+        ("lowest altitude since", _number(flight["lowest_altitude_after_exit"], 2), "m"),
+        ("wing out", _number(flight["wing_out_time"]), "s"),
+        ("true airspeed in cruise", _number(flight["cruise_airspeed"], 2), "m/s"),
+        ("  its standard deviation", _number(flight["cruise_airspeed_sd"], 2), "m/s"),
+    )
+    table = Table(box=None, show_header=False, pad_edge=False)
+    for justify in ("left", "right", "left") * 2:
+        table.add_column(justify=justify, no_wrap=True)
+    for one, other in zip(left, (*right, ("", "", "")), strict=True):
+        table.add_row(*one[:2], f"{one[2]:<6}", *other)
     return table
-
-
-def _milli(value: float | None) -> float | None:
-    return None if value is None else 1e3 * value
 
 
 def _airspeed_table(airspeed: dict[str, Any]) -> Table:
     columns = {"all": airspeed, **{name: airspeed[name] for name in ("stroke", "transition", "cruise")}}
-    table = _table("Airspeed against truth", "", *columns, "unit")
-    for label, key, unit, digits in (
-        ("RMSE raw", "rmse_raw", "m/s", 3),
-        ("RMSE filtered", "rmse", "m/s", 3),
-        ("reduction", "reduction_percent", "%", 1),
-        ("bias", "bias", "m/s", 3),
-        ("largest error", "max_error", "m/s", 3),
-        ("mean e²/sd² (NEES)", "nees_mean", "", 2),
-        ("within ±1.96 sd", "coverage_95", "", 3),
-        ("valid", "valid_fraction", "", 3),
-        ("samples", "samples", "", 0),
+    table = _table(["Airspeed against truth", *columns])
+    for label, key, digits in (
+        ("RMSE raw, m/s", "rmse_raw", 3),
+        ("RMSE filtered, m/s", "rmse", 3),
+        ("reduction, %", "reduction_percent", 1),
+        ("bias, m/s", "bias", 3),
+        ("largest error, m/s", "max_error", 3),
+        ("mean e²/sd² (NEES)", "nees_mean", 2),
+        ("share within ±1.96 sd", "coverage_95", 3),
+        ("share valid", "valid_fraction", 3),
+        ("samples", "samples", 0),
     ):
-        table.add_row(label, *(_number(column[key], digits) for column in columns.values()), unit)
+        table.add_row(label, *(_number(column[key], digits) for column in columns.values()))
     return table
 
 
 def _pressure_table(pressure: dict[str, Any]) -> Table:
-    table = _table("Pressure against truth (mean error before launch removed)", "", "total", "static", "unit")
-    for label, key, unit, digits in (
-        ("RMSE raw", "rmse_raw", "Pa", 2),
-        ("RMSE filtered", "rmse", "Pa", 2),
-        ("reduction", "reduction_percent", "%", 1),
-        ("mean error before launch", "bias", "Pa", 2),
+    table = _table(("Pressure against truth, less its bias", "total", "static"))
+    for label, key, digits in (
+        ("RMSE raw, Pa", "rmse_raw", 2),
+        ("RMSE filtered, Pa", "rmse", 2),
+        ("reduction, %", "reduction_percent", 1),
+        ("bias: mean error before launch, Pa", "bias", 2),
     ):
-        table.add_row(label, *(_number(pressure[name][key], digits) for name in ("total", "static")), unit)
+        table.add_row(label, *(_number(pressure[name][key], digits) for name in ("total", "static")))
     return table
 
 
 def _requirements_table(requirements: list[dict[str, Any]]) -> Table:
-    table = _table("Requirements", "", "at least", "at most", "value", "met")
+    table = _table(("Requirements", "wanted", "found", "met"))
+    table.columns[0].no_wrap = False
     for r in requirements:
-        bounds = ("" if r[side] is None else f"{r[side]:g}" for side in ("minimum", "maximum"))
-        table.add_row(r["key"], *bounds, _number(r["value"]), "yes" if r["met"] else "NO")
+        found = "–" if r["value"] is None else f"{r['value']:.4g}"
+        table.add_row(escape(r["key"]), _wanted(r["minimum"], r["maximum"]), found, "yes" if r["met"] else "[red]NO[/]")
     return table
 
 
+def _wanted(low: float | None, high: float | None) -> str:
+    if low is not None and high is not None:
+        return f"{low:g} … {high:g}"
+    bounds = (f"{sign} {bound:g}" for sign, bound in (("≥", low), ("≤", high)) if bound is not None)
+    return next(bounds, "a number")
+
+
+# -- several flights -------------------------------------------------------------------------------------------------
+
+
 def print_batch(flown: "Batch") -> None:
-    """Print what several flights gave: outcomes, quantiles of latency and error, the worst of each."""
+    """Print what several flights gave: outcomes, quantiles of latency and error, what was not as it should be."""
     console, runs = _console(), flown.runs
-    counts = runs["outcome"].value_counts()
-    summary = ", ".join(f"{count} {name}" for name, count in counts.items())
-    console.print(f"\n[bold]{flown.scenario.name}[/bold], {len(runs)} flights: {summary}\n")
-    console.print(_quantile_table(flown))
-    console.print(f"False detections before release: {int(runs['launch.false_detections'].sum())}")
+    summary = ", ".join(f"{count} {name}" for name, count in runs["outcome"].value_counts().items())
+    false = int(runs["launch.false_detections"].sum())
     unmet = int((~runs["requirements.met"].astype(bool)).sum())
-    console.print(f"Flights with a requirement that is not met: {unmet}")
+    _print(
+        console,
+        f"\n[bold]{escape(flown.scenario.name)}[/bold], {len(runs)} flights: {summary}\n",
+        _quantile_table(flown),
+        f"\nFalse detections before release: {false}",
+        f"Flights with a requirement that is not met: {unmet}",
+    )
 
 
 def _quantile_table(flown: "Batch") -> Table:
     from uavsim.studies.quantiles import quantile_band  # noqa: PLC0415
 
-    names = [f"{100 * q:g} %" for q in QUANTILES]
-    table = _table(
-        "Over the flights: quantile [95 % band by order statistics]", "", "least", *names, "greatest", "unit"
-    )
-    for label, key, unit, factor, digits in (
-        ("latency from true launch", "launch.latency", "ms", 1e3, 1),
-        ("latency from crossing", "launch.latency_from_crossing", "ms", 1e3, 1),
-        ("airspeed at the rail's end", "flight.rail_exit_speed", "m/s", 1.0, 2),
-        ("RMSE filtered, all", "airspeed.rmse", "m/s", 1.0, 3),
-        ("reduction, all", "airspeed.reduction_percent", "%", 1.0, 1),
-        ("reduction, stroke", "airspeed.stroke.reduction_percent", "%", 1.0, 1),
-        ("reduction, cruise", "airspeed.cruise.reduction_percent", "%", 1.0, 1),
-        ("within ±1.96 sd, cruise", "airspeed.cruise.coverage_95", "", 1.0, 3),
+    table = _table(("Quantiles and 95 % bands", "least", *QUANTILES, "greatest"))
+    for label, key, factor, digits in (
+        ("latency, ms", "launch.latency", 1e3, 1),
+        ("  from the 4.5 g, ms", "launch.latency_from_crossing", 1e3, 1),
+        ("airspeed off the rail, m/s", "flight.rail_exit_speed", 1.0, 2),
+        ("RMSE filtered, m/s", "airspeed.rmse", 1.0, 3),
+        ("reduction, %", "airspeed.reduction_percent", 1.0, 1),
+        ("  in the stroke, %", "airspeed.stroke.reduction_percent", 1.0, 1),
+        ("  in cruise, %", "airspeed.cruise.reduction_percent", 1.0, 1),
+        ("within ±1.96 sd in cruise", "airspeed.cruise.coverage_95", 1.0, 3),
     ):
         sample = factor * flown.runs[key].dropna().to_numpy(float)
         if sample.size == 0:
             continue
-        bands = [quantile_band(sample, q) for q in QUANTILES]
-        cells = [
-            f"{b.value:.{digits}f} [{_number(b.low, digits)}, {_number(b.high, digits)}]".replace("[", "\\[")
-            for b in bands
-        ]
-        table.add_row(label, _number(sample.min(), digits), *cells, _number(sample.max(), digits), unit)
+        cells = (_with_band(quantile_band(sample, q), digits) for q in QUANTILES.values())
+        table.add_row(label, _number(sample.min(), digits), *cells, _number(sample.max(), digits))
     return table
+
+
+def _with_band(quantile: "QuantileBand", digits: int) -> str:
+    """Return a quantile above its band, which few flights leave open on a side."""
+    low, high = (_number(bound, digits) for bound in (quantile.low, quantile.high))
+    band = f"{low}…{high}"
+    if quantile.low is None or quantile.high is None:
+        band = f"≥ {low}" if quantile.low is not None else f"≤ {high}" if quantile.high is not None else "–"
+    return f"{_number(quantile.value, digits)}\n[dim]{band}[/]"
+
+
+# -- sensors ---------------------------------------------------------------------------------------------------------
 
 
 def print_presets() -> None:
     """List the sensor presets, a line each."""
     from sensors import presets  # noqa: PLC0415
 
-    console = _console()
     for name in presets():
         sheet = _datasheet(name)
-        console.print(f"{name:<12} {sheet['kind']:<14} {sheet['part']}", markup=False)
+        say(f"{name:<12} {sheet['kind']:<14} {sheet['part']}")
 
 
 def print_preset(name: str) -> None:
-    """Print a preset: every value with its unit (part of its name) and its source.
+    """Print a preset: every value with its unit, and where the datasheet has it.
 
     Raises
     ------
@@ -176,22 +274,44 @@ def print_preset(name: str) -> None:
 
     preset(name)
     sheet, console = _datasheet(name), _console()
-    console.print(f"[bold]{name}[/bold]: {sheet['part']}\n{sheet['document']}\n")
-    table = Table(title_justify="left", show_lines=False, pad_edge=False)
-    for column in ("key", "value", "source and wording"):
-        table.add_column(column, overflow="fold")
     sources = sheet["sources"]
+    _print(console, f"[bold]{name}[/bold]: {escape(sheet['part'])}\n{escape(sheet['document'])}\n")
+    table = _sources_table("value")
     for key, value in sheet["values"].items():
-        table.add_row(key, _plain(value), sources.get(key, ""))
-    console.print(table)
-    if "modes" in sheet:
-        modes = _table("Modes", *sheet["modes"][0])
-        for mode in sheet["modes"]:
-            modes.add_row(*(_plain(value) for value in mode.values()))
-        console.print(modes)
-        for key in sheet["modes"][0]:
-            if key in sources:
-                console.print(f"{key}: {sources[key]}", markup=False)
+        unit = PRESET_UNITS.get(key, "")
+        table.add_row(_words(key), f"{_plain(value)} {unit}".rstrip(), escape(sources.get(key, "")))
+    _print(console, table)
+    modes = sheet.get("modes", [])
+    if modes:
+        table = _table(
+            ["mode", *(", ".join(filter(None, (_words(k), PRESET_UNITS.get(k)))) for k in list(modes[0])[1:])]
+        )
+        for column in table.columns:
+            column.no_wrap = False
+        for mode in modes:
+            table.add_row(*map(_plain, mode.values()))
+        _print(console, "", table, "")
+        table = _sources_table()
+        for key in modes[0]:
+            if f"modes.{key}" in sources:
+                table.add_row(_words(key), escape(sources[f"modes.{key}"]))
+        _print(console, table)
+
+
+def _sources_table(*columns: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    table.add_column("", no_wrap=True)
+    for name in columns:
+        table.add_column(name, max_width=24)
+    table.add_column("where from, and how it is taken")
+    return table
+
+
+def _words(key: str) -> str:
+    """Return a key as words, without the unit at its end."""
+    if key in PRESET_UNITS:
+        key = next((key.removesuffix(s) for s in _SUFFIXES if key.endswith(s)), key)
+    return key.replace("_", " ")
 
 
 def _datasheet(name: str) -> dict[str, Any]:
@@ -201,18 +321,24 @@ def _datasheet(name: str) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> str:
+    """Return a value as text; axes that are alike count once."""
     if isinstance(value, list):
-        return ", ".join(_plain(item) for item in value)
+        return ", ".join("/".join(dict.fromkeys(map(_plain, v))) if isinstance(v, list) else _plain(v) for v in value)
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+# -- cost ------------------------------------------------------------------------------------------------------------
 
 
 def print_cost(cost: "Cost") -> None:
     """Print what a step costs; the last line is the ratio that outside checks read."""
-    console = _console()
-    console.print(f"steps                      {cost.steps}")
-    console.print(f"in the loop                {cost.in_loop:.2f} µs a step")
-    console.print(f"JSBSim, truth recorded     {cost.reference:.2f} µs a step")
-    console.print(f"JSBSim, nothing recorded   {cost.bare:.2f} µs a step")
-    console.print(f"in the loop over bare      {cost.ratio_over_bare:.2f}")
-    console.print(f"same final state           {'yes, bit for bit' if cost.same_state else 'NO'}")
-    console.print(f"ratio {cost.ratio:.2f}")
+    for line in (
+        f"steps                      {cost.steps}",
+        f"in the loop                {cost.in_loop:.2f} µs a step",
+        f"JSBSim, truth recorded     {cost.reference:.2f} µs a step",
+        f"JSBSim, nothing recorded   {cost.bare:.2f} µs a step",
+        f"in the loop over bare      {cost.ratio_over_bare:.2f}",
+        f"same final state           {'yes, bit for bit' if cost.same_state else 'NO'}",
+        f"ratio {cost.ratio:.2f}",
+    ):
+        say(line)
