@@ -159,6 +159,8 @@ def test_crossing_is_above_four_and_a_half_g() -> None:
     assert score(weak)["launch"]["latency_from_crossing"] is None
     above = made(change=holding(setting("fx", 2.0, 0.0), setting("fx", 44.14, 2.3)))
     assert above.crossing_time == pytest.approx(2.3)
+    knocked = made(change=setting("fx", 60.0, 1.0, 1.05))
+    assert knocked.crossing_time == pytest.approx(RELEASE + 0.021)
 
 
 def test_detections_before_release_are_false_and_never_the_detection() -> None:
@@ -265,6 +267,7 @@ def with_event(name: str, time: float | None) -> tuple[tuple[str, float], ...]:
         ("timeout", {"change": setting("airspeed", AIM + 2.01, 9.0, 9.001)}),
         ("cruise", {"change": setting("airspeed", AIM - 1.99, 9.0, 9.001)}),
         ("cruise", {"change": setting("airspeed", 25.0, 6.9, 6.99)}),
+        ("timeout", {"change": setting("airspeed", 25.0, 7.01, 7.02)}),
         ("timeout", {"change": setting("airspeed", math.nan, 9.0, 9.001)}),
         ("timeout", {"change": setting("roll", math.radians(-30.0), 11.0, 11.001)}),
         ("cruise", {"change": setting("roll", math.radians(29.9), 7.0)}),

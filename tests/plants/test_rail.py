@@ -96,6 +96,13 @@ def test_a_slot_holds_to_both_sides() -> None:
     assert right.front_lateral == pytest.approx(-left.front_lateral)
 
 
+def test_a_lateral_force_on_the_shoes_does_not_roll_the_aircraft() -> None:
+    """The shoes are below the centre of gravity; the moment -z F_y of their forces is taken by the slot's width."""
+    f = at(rail(), 1.0, side=1e-3)
+    assert f.front_lateral != 0.0
+    assert f.roll_moment - FRONT[2] * f.front_lateral - REAR[2] * f.rear_lateral == pytest.approx(0.0, abs=1e-9)
+
+
 def test_roll_is_held_and_damped() -> None:
     rolled = (0.02, UPRIGHT[1], 0.0)
     assert at(rail(), 1.0, attitude=rolled).roll_moment < 0.0
@@ -147,6 +154,8 @@ def test_the_push_falls_so_that_it_ends_with_the_stroke() -> None:
 def test_a_stroke_without_room_for_its_rise_still_ends() -> None:
     """15 g over 0.6 m: the push begins to fall as soon as it has risen."""
     box = rail(stroke=0.6, peak_specific_force_g=15.0)
+    at(box, RELEASE + 0.020, 0.50, 18.0)
+    assert box.push == pytest.approx(2.0 / 3.0 * box.plateau)
     at(box, RELEASE + 0.031, 0.55, 18.0)
     at(box, RELEASE + 0.061, 0.58, 18.0)
     assert box.push == pytest.approx(0.5 * box.plateau)
