@@ -135,7 +135,10 @@ def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation"
 
     where = "--set" if any(g.strip().startswith("aircraft.") for g in given) else scenario.name
     with _input(f"{where}: "):
-        return Cosimulation(scenario)
+        try:
+            return Cosimulation(scenario)
+        except RuntimeError as error:  # what JSBSim raises on files that it cannot parse
+            raise ValueError(f"aircraft.model: {error}") from error
 
 
 def _fly_one(simulation: "Cosimulation", place: Callable[[], Path], *, plots: bool, overwrite: bool) -> None:
@@ -346,12 +349,13 @@ def main() -> None:
             stream.reconfigure(errors="replace")  # a terminal without Greek is no reason to fail
     try:
         status = app(standalone_mode=False)
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except (typer.Abort, KeyboardInterrupt):
         status = INTERRUPTED
     except _UsageError as error:
         status = _complain(error.format_message())  # type: ignore[attr-defined]  # the class is known at run time only
-    except BrokenPipeError:
+    except (BrokenPipeError, SystemExit):  # the reader of our output left; click ends the program at that
         from uavsim.views.terminal import mute  # noqa: PLC0415
 
         mute()

@@ -185,14 +185,15 @@ def _parsed(path: Path) -> dict[str, Any]:
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
-            raise ValueError(f"{path}: not a scenario: larger than {LARGEST_FILE} bytes")
-        return tomllib.loads(content.decode("utf-8-sig"))
     except OSError as error:
         raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+    if len(content) > LARGEST_FILE:
+        raise ValueError(f"{path}: not a scenario: larger than {LARGEST_FILE} bytes")
+    try:
+        return tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise ValueError(f"{path}: not a TOML file: it is not text in UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # TOMLDecodeError, and Python's own on numbers of thousands of digits
         raise ValueError(f"{path}: not valid TOML: {error}") from None
     except RecursionError:
         raise ValueError(f"{path}: not a scenario: nested too deep") from None
