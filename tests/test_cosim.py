@@ -18,6 +18,7 @@ from scipy.stats import chi2, kstest
 
 import uavsim
 from sensors import Streams, Vibration
+from uavsim import cosim
 from uavsim.cosim import CHUNK, Cosimulation, Onboard, draw, plant_settings, replay
 from uavsim.flight import UNITS, Flight
 from uavsim.plants import jsbsim
@@ -352,6 +353,25 @@ def test_conversions_run_on_their_own_clocks(launch: Flight, channel: str) -> No
     assert age.max() < 1.0
 
 
+def test_replay_hands_on_the_readings_in_the_order_of_the_flight(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is recorded today would not show it, but a computer that joins both kinds of readings would."""
+    orders: list[list[tuple[float, int]]] = []
+
+    class Watched(Onboard):
+        def __init__(self, scenario: Scenario, release_time: float) -> None:
+            super().__init__(scenario, release_time)
+            order: list[tuple[float, int]] = []
+            orders.append(order)
+            take, take_air = self.accelerometer, self.air_data
+            self.accelerometer = lambda *r: (order.append((r[0], 0)), take(*r))[1]
+            self.air_data = lambda r: (order.append((r[0], 1)), take_air(r))[1]
+
+    monkeypatch.setattr(cosim, "Onboard", Watched)
+    replay(uavsim.fly(short()))
+    assert len(orders[0]) > 6000
+    assert orders[0] == orders[1]
+
+
 @pytest.mark.parametrize("rate", [100.0, 1000.0])
 def test_readings_reach_onboard_in_the_order_of_their_time_stamps(rate: float) -> None:
     simulation = Cosimulation(short(f"air_data.rate={rate}"))
@@ -647,6 +667,22 @@ def test_vibration_scale_is_a_factor_on_all_vibration() -> None:
     one, two = readings[1] - readings[0], readings[2] - readings[0]
     assert np.abs(two - 2.0 * one).max() <= 3.0 * step
     assert one[:1500].std() == pytest.approx(0.05 * STANDARD_GRAVITY, rel=0.15)
+
+
+def test_vibration_is_that_of_the_phase() -> None:
+    """1 g rms in one phase at a time, seen along y: until release, until the rail's end, after; and nowhere else."""
+    phases = ("waiting", "stroke", "flight")
+    for shaken in phases:
+        levels = [f"vibration.{phase}_rms_g={int(phase == shaken)}" for phase in phases]
+        flight = uavsim.fly(short(*levels, "vibration.ring_fraction=0"))
+        times, t = flight.score["launch"], column(flight, "accelerometer", "t")
+        release, end = times["release_time"], flight.score["flight"]["rail_exit_time"]
+        true = np.interp(t, column(flight, "truth", "t"), column(flight, "truth", "fy"))
+        felt = column(flight, "accelerometer", "fy") - true
+        spans = {"waiting": (0.0, release), "stroke": (release + 0.01, end), "flight": (end + 0.5, end + 2.0)}
+        for phase, (first, last) in spans.items():
+            rms = felt[(t >= first) & (t < last)].std() / STANDARD_GRAVITY
+            assert 0.6 < rms < 1.2 if phase == shaken else rms < 0.1
 
 
 @pytest.mark.parametrize("channel", ["total", "static"])

@@ -34,6 +34,8 @@ Progress = Callable[[int, int], None]
 """Called with the number of finished flights and of all."""
 Result = tuple[dict[str, Any], "ErrorTrace", Flight | None]
 """Row, errors, and the flight itself if it is kept."""
+Finished = Callable[[int, Result], None]
+"""Called with a flight's position among the seeds and what it gave; again with the same changes nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,11 +106,19 @@ def fly_seeds(
     started = time.monotonic()
     done: dict[int, Result] = {}
     complete = True
+
+    def finished(position: int, result: Result) -> None:
+        known = position in done
+        done[position] = result
+        if progress is not None and not known:
+            progress(len(done), len(seeds))
+
+    workers = workers or os.cpu_count() or 1
     try:
-        for position, result in _results(scenario, seeds, workers or os.cpu_count() or 1):
-            done[position] = result
-            if progress is not None:
-                progress(len(done), len(seeds))
+        if workers == 1 or len(seeds) <= 1:
+            _in_turn(scenario, seeds, finished)
+        else:
+            _together(scenario, seeds, finished, workers)
     except KeyboardInterrupt:
         complete = False
     ordered = [done[position] for position in sorted(done)]
@@ -122,12 +132,13 @@ def fly_seeds(
     )
 
 
-def _results(scenario: Scenario, seeds: list[int], workers: int) -> Iterator[tuple[int, Result]]:
-    """Yield each flight's position in `seeds` and what it gave, as they finish."""
-    if workers == 1 or len(seeds) <= 1:
-        for position, seed in enumerate(seeds):
-            yield position, _one(scenario, seed, keep=position == 0)
-        return
+def _in_turn(scenario: Scenario, seeds: list[int], finished: Finished) -> None:
+    for position, seed in enumerate(seeds):
+        finished(position, _one(scenario, seed, keep=position == 0))
+
+
+def _together(scenario: Scenario, seeds: list[int], finished: Finished, workers: int) -> None:
+    """Fly in several processes. When interrupted, start no more, and wait for what is under way."""
     with ProcessPoolExecutor(min(workers, len(seeds)), mp_context=get_context("spawn")) as pool:
         with _interrupts_ignored():
             waiting: dict[Future[Result], int] = {
@@ -135,13 +146,13 @@ def _results(scenario: Scenario, seeds: list[int], workers: int) -> Iterator[tup
             }
         try:
             for future in as_completed(waiting):
-                yield waiting.pop(future), future.result()
-        except KeyboardInterrupt:
+                finished(waiting[future], future.result())
+        except BaseException as error:
             pool.shutdown(wait=True, cancel_futures=True)
-            yield from ((waiting[future], future.result()) for future in waiting if not future.cancelled())
-            raise
-        except BaseException:
-            pool.shutdown(wait=True, cancel_futures=True)
+            if isinstance(error, KeyboardInterrupt):
+                for future, position in waiting.items():
+                    if not future.cancelled():
+                        finished(position, future.result())
             raise
 
 
