@@ -8,9 +8,14 @@ if TYPE_CHECKING:
     from uavsim.flight import Flight
 
 
+PAPER_GAIN = 0.8  # of the published method's filter on the total pressure
+LITTLE = 5.0  # %, a reduction of the RMSE that is not worth a filter
+MOSTLY = 0.7  # share of the RMSE that makes the bias the story
+
+
 def notes(flight: "Flight") -> list[str]:
     """Sentences on a flight's score, none where nothing needs saying."""
-    found = [_stroke(flight), _no_help(flight), _single_flight(flight)]
+    found = [_stroke(flight), _bias(flight) or _no_help(flight), _single_flight(flight)]
     return [note for note in found if note]
 
 
@@ -24,23 +29,38 @@ def _stroke(flight: "Flight") -> str:
     )
 
 
-def _no_help(flight: "Flight") -> str:
-    """Why a constant-gain filter cannot help sensors that are quieter than its lag."""
+def _bias(flight: "Flight") -> str:
+    """Say that an error is one that no filter takes away."""
     airspeed = flight.score["airspeed"]
-    if airspeed["reduction_percent"] is None or airspeed["reduction_percent"] > 0.0:
+    if not airspeed["rmse"] or abs(airspeed["bias"]) < MOSTLY * airspeed["rmse"]:
         return ""
-    lag, noise, gain, interval = _lag_against_noise(flight)
+    tare = flight.scenario["air_data"]["tare"]
     return (
-        f"this filter cannot help here: with a gain of {gain:.2f} every {1e3 * interval:.1f} ms the stroke's pressure "
-        f"rise makes it lag by up to {lag:.1f} Pa, and the sensor's noise, all that it could take away, is "
-        f"{noise:.2f} Pa rms."
+        f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, which no filter takes away "
+        f"(air_data.tare is {tare!r})."
     )
 
 
-def _lag_against_noise(flight: "Flight") -> tuple[float, float, float, float]:
-    """Largest ramp lag, noise, Pa, gain and interval, s, of the total channel.
+def _no_help(flight: "Flight") -> str:
+    """Why a constant-gain filter cannot help sensors that are quieter than its lag."""
+    airspeed = flight.score["airspeed"]
+    if airspeed["reduction_percent"] is None or airspeed["reduction_percent"] > LITTLE:
+        return ""
+    noise, gain, slope, interval = _total_channel(flight)
+    lag = slope * interval * (1.0 - PAPER_GAIN) / PAPER_GAIN
+    kept = (PAPER_GAIN / (2.0 - PAPER_GAIN)) ** 0.5
+    return (
+        f"this filter cannot help here: the sensor's noise is {noise:.2f} Pa rms every {1e3 * interval:.1f} ms. A gain "
+        f"of {PAPER_GAIN} would leave {noise * kept:.2f} Pa of it, and lag {lag:.1f} Pa behind the stroke's pressure "
+        f"rise of {slope:.0f} Pa/s; with this scenario's q_total the gain is {gain:.2f}."
+    )
 
-    A random-walk filter of steady gain K follows a ramp with an error of slope * interval * (1 - K) / K.
+
+def _total_channel(flight: "Flight") -> tuple[float, float, float, float]:
+    """Noise, Pa, steady gain, steepest rise in the stroke, Pa/s, and interval, s, of the total pressure.
+
+    A random-walk filter of steady gain K leaves sqrt(K / (2 - K)) of white noise and follows a ramp with an error of
+    slope * interval * (1 - K) / K.
     """
     from uavsim.cosim import believed_noise  # noqa: PLC0415
     from uavsim.onboard.airspeed import steady_gain  # noqa: PLC0415
@@ -48,11 +68,10 @@ def _lag_against_noise(flight: "Flight") -> tuple[float, float, float, float]:
 
     scenario = Scenario.from_dict(flight.scenario)
     noise = believed_noise(scenario).total_sd
-    gain = steady_gain(scenario.estimator.q_total, noise**2)
-    truth = flight.truth
-    slope = float(np.max(np.abs(np.diff(truth["p_total"].to_numpy())))) / float(np.diff(truth["t"].to_numpy()[:2])[0])
+    stroke = flight.truth[flight.truth["phase"] == "stroke"]
+    slope = float(np.max(np.gradient(stroke["p_total"].to_numpy(), stroke["t"].to_numpy()))) if len(stroke) > 1 else 0.0
     interval = float(np.median(np.diff(np.unique(flight.air_data["t_total"].dropna().to_numpy()))))
-    return slope * interval * (1.0 - gain) / gain, noise, gain, interval
+    return noise, steady_gain(scenario.estimator.q_total, noise**2), slope, interval
 
 
 def _single_flight(flight: "Flight") -> str:
