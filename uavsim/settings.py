@@ -104,10 +104,10 @@ def unknown(kind: type, key: str) -> SettingError:
     inside = [k.removeprefix(f"{key}.") for k in known if k.startswith(f"{key}.")]
     if inside:
         return SettingError(f"{key} is a group; its keys are {', '.join(inside)}", key)
-    near = get_close_matches(key, known, n=1, cutoff=0.5)
-    if not near:  # a right name in the wrong group is the next most likely slip
-        last = key.rpartition(".")[2]
-        near = [k for k in known if k.rpartition(".")[2] == last][:1]
+    last = key.rpartition(".")[2]
+    names = {k if "." in key else k.rpartition(".")[2]: k for k in reversed(known)}
+    near = [names[match] for match in get_close_matches(key, names, n=1, cutoff=0.5)]
+    near = near or [k for k in known if k.rpartition(".")[2] == last][:1]  # a right name in a wrong group
     hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(hints(kind))}"
     return SettingError(f"unknown key {_shown(key)}; {hint}", key)
 
