@@ -1,0 +1,438 @@
+"""The command line as a new user and as a hostile one meets it: exit status, one line of error, what is written."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import typer
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from uavsim import __version__, cli, cosim
+from uavsim.flight import UNITS, load
+from uavsim.scenario import packaged
+
+FILES = {"scenario.toml", "score.json", "events.json", *(f"{name}.parquet" for name in UNITS)}
+SHORT = ("--set", "duration=6", "--set", "requirements=[]", "--set", "expect=timeout", "--no-plots")
+PLOTS = {"plots/launch.png", "plots/pressure.png", "plots/airspeed.png", "plots/trajectory.png"}
+COMMANDS = [command.callback.__name__ for command in cli.app.registered_commands if command.callback]
+
+
+@dataclass(frozen=True)
+class Result:
+    status: int
+    out: str
+    err: str
+
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Return a function that runs the command line in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+    for name in ("FORCE_COLOR", "CLICOLOR_FORCE", "TTY_COMPATIBLE"):
+        monkeypatch.delenv(name, raising=False)
+
+    def call(*arguments: str) -> Result:
+        monkeypatch.setattr(sys, "argv", ["uavsim", *arguments])
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        status = caught.value.code
+        assert isinstance(status, int)
+        return Result(status, *capsys.readouterr())
+
+    return call
+
+
+def written(folder: Path) -> set[str]:
+    return {str(entry.relative_to(folder)) for entry in folder.rglob("*") if entry.is_file()}
+
+
+def process(code: str, cwd: Path, *arguments: str, **more: object) -> "subprocess.Popen[str]":
+    """Start a Python of its own, in a group of its own as a terminal has it."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **more}
+    return subprocess.Popen(  # type: ignore[call-overload,no-any-return]
+        [sys.executable, "-c", code, *arguments], cwd=cwd, env=environment, text=True, start_new_session=True, **pipes
+    )
+
+
+# -- as a new user ---------------------------------------------------------------------------------------------------
+
+
+def test_without_a_command_there_is_help(run: Run) -> None:
+    alone, asked = run(), run("--help")
+    assert (alone.status, alone.err) == (0, "")
+    assert alone.out == asked.out
+    for command in COMMANDS:
+        assert f"\n    uavsim {command}" in alone.out  # an example of each, on a line of its own
+        assert f"\n  {command}" in alone.out
+    assert "…" not in alone.out
+    assert "..." not in alone.out.split("Commands:")[1]
+    assert max(map(len, alone.out.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_of_each_has_an_example(run: Run, command: str) -> None:
+    result = run(command, "--help")
+    assert (result.status, result.err) == (0, "")
+    assert f"Example: uavsim {command}" in result.out
+    assert not set("╭│╰┃") & set(result.out)
+
+
+def test_version(run: Run) -> None:
+    assert run("--version") == Result(0, f"uavsim {__version__}\n", "")
+
+
+def test_scenarios_are_a_line_each(run: Run) -> None:
+    result = run("scenarios")
+    assert (result.status, result.err) == (0, "")
+    assert [line.split()[0] for line in result.out.splitlines()] == sorted(packaged())
+
+
+def test_sensors_are_a_line_each(run: Run) -> None:
+    result = run("sensors")
+    assert (result.status, result.err) == (0, "")
+    assert [line.split()[0] for line in result.out.splitlines()] == ["adxl345", "bmp390", "bmp581", "lsm6dso32"]
+
+
+def test_a_first_flight(run: Run, tmp_path: Path) -> None:
+    """All defaults but the length: score, folder, plots; a second one goes beside it."""
+    first = run("fly", *SHORT[:-1])
+    assert (first.status, first.err) == (0, "")
+    assert "catapult, seed 1: timeout (as expected)" in first.out
+    assert first.out.endswith("written to output/catapult-1\n")
+    assert written(tmp_path / "output" / "catapult-1") == FILES | PLOTS
+    assert run("fly", *SHORT).out.endswith("written to output/catapult-1-2\n")
+    assert run("fly", *SHORT, "--seed", "12").out.endswith("written to output/catapult-12\n")
+    replayed = run("replay", "output/catapult-1")
+    assert (replayed.status, replayed.err) == (0, "")
+    again = tmp_path / "output" / "catapult-1-replay"
+    for name in ("events.json", "estimate.parquet"):
+        assert (again / name).read_bytes() == (tmp_path / "output" / "catapult-1" / name).read_bytes()
+    assert written(again) == FILES | PLOTS
+
+
+def test_a_flights_folder_flies_again(run: Run, tmp_path: Path) -> None:
+    run("fly", *SHORT, "--out", "one", "--set", "name=mine", "--seed", "5")
+    assert run("fly", "one", "--no-plots", "--out", "two").status == 0
+    for name in FILES:
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+    assert run("fly", "one/scenario.toml", "--no-plots").out.endswith("written to output/mine-5\n")
+
+
+def test_several_flights(run: Run, tmp_path: Path) -> None:
+    result = run("fly", *SHORT, "--seeds", "2-3")
+    assert (result.status, result.err) == (0, "")
+    assert "catapult, 2 flights: 2 timeout" in result.out
+    assert result.out.endswith("written to output/catapult-2-3\n")
+    folder = tmp_path / "output" / "catapult-2-3"
+    runs = pd.read_parquet(folder / "runs.parquet")
+    assert list(runs["seed"]) == [2, 3]
+    assert load(folder / "flights" / "2").score["seed"] == 2
+
+
+# -- what comes out --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("scenario", "sets", "outcome"),
+    [
+        ("weak-launch", ["expect=cruise"], "missed_launch"),
+        ("catapult", ["duration=6", "requirements=[]"], "timeout"),
+        ("catapult", ["duration=5", "expect=timeout", 'requirements=[{key="airspeed.rmse", maximum=1e-6}]'], "timeout"),
+        ("catapult", ["duration=5", "aircraft.properties.inertia/pointmass-weight-lbs=1e6"], "diverged"),
+    ],
+)
+def test_another_outcome_or_an_unmet_requirement_is_1_with_everything_written(
+    run: Run, tmp_path: Path, scenario: str, sets: list[str], outcome: str
+) -> None:
+    changes = [part for change in sets for part in ("--set", change)]
+    result = run("fly", scenario, *changes, "--no-plots", "--out", "here")
+    assert (result.status, result.err) == (1, "")
+    assert outcome in result.out
+    assert written(tmp_path / "here") == FILES
+    assert load(tmp_path / "here").score["outcome"] == outcome
+
+
+def test_an_unmet_requirement_of_one_of_several_is_1(run: Run, tmp_path: Path) -> None:
+    wanted = 'requirements=[{key="launch.release_time", maximum=3.0}]'
+    result = run("fly", *SHORT, "--set", wanted, "--seeds", "1,2", "--out", "here")
+    times = pd.read_parquet(tmp_path / "here" / "runs.parquet")["launch.release_time"]
+    assert sorted(times > 3.0) == [False, True]
+    assert (result.status, result.err) == (1, "")
+
+
+def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise ValueError("operands could not be broadcast together")
+
+    monkeypatch.setattr(cosim.Cosimulation, "advance", broken)
+    with pytest.raises(ValueError, match="operands"):
+        run("fly")
+    assert written(tmp_path) == set()
+
+
+# -- as a hostile one ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ("fly catapalt", "unknown scenario 'catapalt'; did you mean 'catapult'?"),
+        ("fly nothing.toml", "nothing.toml: there is no such file"),
+        ("fly binary", "binary: not a TOML file"),
+        ("fly .", "this folder holds no scenario.toml"),
+        ("fly one two", "unexpected extra argument"),
+        ("fly --sets x=1", "No such option: --sets"),
+        ("fly --set", "'--set' requires an argument"),
+        ("fly --set x", "--set 'x': give it as KEY=VALUE"),
+        ("fly --set =1", "give it as KEY=VALUE"),
+        ("fly --set launcher.storke=1", "did you mean 'launcher.stroke'?"),
+        ("fly --set launcher.stroke=nan", "must be a number from 0.6 to 50"),
+        ("fly --set accelerometer.preset=adxl", "nearest: adxl345"),
+        ("fly --set air_data.total.mode=x9/x9", "allowed: x1/x1"),
+        ("fly --set aircraft.model=fw9", "did you mean 'fw8'?"),
+        ("fly --set aircraft.model=broken", "aircraft.model: In file"),
+        ("fly --set aircraft.properties.NAME=1", "--set: aircraft.properties: 'NAME' is no property of 'fw8'"),
+        ("fly --set aircraft.properties.=1", "'' is no property"),
+        ("fly --set aircraft.properties.ap/gain/picth=1", "did you mean 'ap/gain/pitch'?"),
+        ("fly --set aircraft.properties.inertia/cg-x-in=1", "'inertia/cg-x-in' is read-only in JSBSim"),
+        ("fly properties.toml", "properties: aircraft.properties: 'NAME' is no property"),
+        ("fly --set vibration.band_hz=[5,2000]", "band_hz 5 to 2000 must lie above 0 and below half the step rate"),
+        ("fly --set detector.threshold=400", "can never be sure to show it"),
+        ("fly --set accelerometer.rate=1001", "allowed: 12.5, 26"),
+        ("fly --set air_data.tare_duration=3", "must fit into the shortest wait"),
+        ("fly --seed x", "--seed"),
+        ("fly --seed 1.5", "--seed"),
+        ("fly --seed -1", "--seed: seed = -1: must be a whole number from 0 to 9223372036854775807"),
+        ("fly --seed 99999999999999999999", "--seed: seed = 99999999999999999999: must be a whole number"),
+        ("fly --seed 1 --seeds 1-2", "give --seed or --seeds, not both"),
+        ("fly --seeds x", "--seeds: 'x': give seeds as 1-50 or 1,5,9"),
+        ("fly --seeds 2-1", "give seeds as"),
+        ("fly --seeds 1,1", "names a seed twice"),
+        ("fly --seeds 0-99999999999", "more than 100000 flights"),
+        ("fly --seeds 1-2 --set expect=cruse", "did you mean 'cruise'?"),
+        ("fly --seeds 1-2 --set aircraft.properties.NAME=1", "'NAME' is no property"),
+        ("fly --out file", "file is a file, not a folder"),
+        ("fly --out file/below/it", "file/below/it cannot be written: Not a directory"),
+        ("fly --out full", "full is not empty; choose another folder or give --overwrite"),
+        ("fly --seeds 1-2 --out full", "full is not empty"),
+        ("replay nothing", "nothing is not a flight's folder: there is no such folder"),
+        ("replay full", "full is not a flight's folder: scenario.toml is missing"),
+        ("replay", "Missing argument"),
+        ("sensors bmp39", "nearest: bmp390"),
+        ("sensors ../sensors", "preset '../sensors' is unknown"),
+        ("bench nothing", "unknown scenario 'nothing'"),
+        ("bench weak-launch", "nothing to compare"),
+        ("flie", "No such command 'flie'"),
+        ("--bogus", "No such option: --bogus"),
+    ],
+)
+def test_wrong_input_is_2_with_one_line_and_nothing_written(
+    run: Run, tmp_path: Path, arguments: str, says: str
+) -> None:
+    (tmp_path / "binary").write_bytes(b"\x00\xff")
+    (tmp_path / "file").touch()
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine").touch()
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken" / "broken.xml").write_text("<fdm_config")
+    (tmp_path / "properties.toml").write_text("[aircraft.properties]\nNAME = 1\n")
+    before = set(tmp_path.rglob("*"))
+    result = run(*arguments.split(" "))
+    assert (result.status, result.out) == (2, "")
+    assert result.err.startswith("Error: ")
+    assert result.err.endswith("\n")
+    assert len(result.err.splitlines()) == 1
+    assert says in result.err
+    assert "Usage" not in result.err
+    assert set(tmp_path.rglob("*")) == before
+
+
+def test_a_flight_may_be_written_over_only_if_that_is_asked_for(run: Run, tmp_path: Path) -> None:
+    arguments = ("fly", *SHORT, "--out", "here")
+    assert run(*arguments, "--seed", "1").status == 0
+    assert run(*arguments, "--seed", "2").status == 2
+    assert load(tmp_path / "here").score["seed"] == 1
+    assert run(*arguments, "--seed", "2", "--overwrite").status == 0
+    assert load(tmp_path / "here").score["seed"] == 2
+    (tmp_path / "empty").mkdir()
+    assert run(*arguments[:-1], "empty").status == 0
+    assert run("replay", "here", "--out", "empty", "--no-plots").status == 2
+    assert run("replay", "here", "--out", "empty", "--no-plots", "--overwrite").status == 0
+    assert load(tmp_path / "empty").score["seed"] == 2
+
+
+def test_what_cannot_be_replayed_is_told(run: Run, tmp_path: Path) -> None:
+    run("fly", *SHORT, "--out", "here")
+    (tmp_path / "here" / "air_data.parquet").rename(tmp_path / "air_data.parquet")
+    assert run("replay", "here").err == "Error: here cannot be replayed: air_data.parquet is missing\n"
+    (tmp_path / "air_data.parquet").rename(tmp_path / "here" / "air_data.parquet")
+    (tmp_path / "here" / "scenario.toml").write_text("duration = -1")
+    assert run("replay", "here").err.startswith("Error: here/scenario.toml: duration = -1: must be")
+    assert not (tmp_path / "output").exists()
+
+
+# -- seeds -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "seeds", "name"),
+    [
+        ("7", [7], "7"),
+        ("1-3", [1, 2, 3], "1-3"),
+        ("0,5,3", [0, 5, 3], "0,5,3"),
+        ("1, 3-4 ,9", [1, 3, 4, 9], "1,3,4,9"),
+        (str(2**63 - 1), [2**63 - 1], str(2**63 - 1)),
+        (",".join(map(str, range(0, 60, 2))), list(range(0, 60, 2)), "30-seeds"),
+    ],
+)
+def test_seeds(text: str, seeds: list[int], name: str) -> None:
+    assert cli._seeds(text) == seeds
+    assert cli._named(seeds) == name
+
+
+@settings(deadline=None, derandomize=True)
+@given(st.text("0123456789-, ²x", max_size=12) | st.text(max_size=8))
+def test_any_text_is_seeds_or_refused(text: str) -> None:
+    try:
+        seeds = cli._seeds(text)
+    except typer.BadParameter:
+        return
+    assert 0 < len(seeds) == len(set(seeds)) <= cli.MOST_FLIGHTS
+    assert all(0 <= seed < 2**63 for seed in seeds)
+
+
+# -- interrupted -----------------------------------------------------------------------------------------------------
+
+FLYING = """
+import sys
+from uavsim import cli, cosim
+advance = cosim.Cosimulation.advance
+def tell(*arguments):
+    print("flying", flush=True)
+    advance(*arguments)
+cosim.Cosimulation.advance = tell
+cli.main()
+"""
+
+COUNTING = """
+import sys
+from uavsim import cli
+if __name__ == "__main__":
+    cli._Bar.show = lambda self, share: print(share, flush=True)
+    cli.main()
+"""
+
+
+def test_ctrl_c_in_a_flight_is_130_and_leaves_nothing(tmp_path: Path) -> None:
+    flying = process(FLYING, tmp_path, "fly", "--set", "duration=3600")
+    assert flying.stdout is not None
+    assert flying.stdout.readline() == "flying\n"
+    os.killpg(flying.pid, signal.SIGINT)
+    _, err = flying.communicate(timeout=60)
+    assert (flying.returncode, err) == (130, "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_ctrl_c_in_several_keeps_what_was_finished(tmp_path: Path) -> None:
+    """As from a terminal, where all processes of the group get the signal."""
+    flying = process(COUNTING, tmp_path, "fly", *SHORT, "--seeds", "1-500", "--out", "here")
+    assert flying.stdout is not None
+    assert [flying.stdout.readline() for _ in range(2)] == ["0.002\n", "0.004\n"]
+    os.killpg(flying.pid, signal.SIGINT)
+    out, err = flying.communicate(timeout=60)
+    runs = pd.read_parquet(tmp_path / "here" / "runs.parquet")
+    assert 2 <= len(runs) < 500
+    assert flying.returncode == 130
+    assert err == f"interrupted: {len(runs)} of 500 flights are kept\n"
+    assert f"catapult, {len(runs)} flights: {len(runs)} timeout" in out
+    assert runs["seed"].is_monotonic_increasing
+    told = json.loads((tmp_path / "here" / "campaign.json").read_text(encoding="utf-8"))
+    assert (told["complete"], told["seeds"]) == (False, list(runs["seed"]))
+    for seed in (p.name for p in (tmp_path / "here" / "flights").iterdir()):
+        assert load(tmp_path / "here" / "flights" / seed).score["seed"] == int(seed)
+
+
+def test_ctrl_c_before_anything_is_finished_leaves_nothing(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cosim.Cosimulation, "advance", interrupt)
+    for several in ((), ("--seeds", "1")):
+        assert run("fly", *several) == Result(130, "", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+# -- other people's ends of the pipe ---------------------------------------------------------------------------------
+
+MAIN = "from uavsim.cli import main\nmain()"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status"),
+    [
+        (("scenarios",), 0),
+        (("--help",), 0),
+        (("sensors", "bmp390"), 0),
+        (("fly", *SHORT, "--out", "here"), 0),
+        (("fly", *SHORT, "--set", "expect=cruise", "--out", "here"), 1),
+    ],
+)
+def test_a_reader_that_leaves_costs_nothing(tmp_path: Path, arguments: tuple[str, ...], status: int) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    gone = process(MAIN, tmp_path, *arguments, stdout=write)
+    os.close(write)
+    _, err = gone.communicate(timeout=60)
+    assert (gone.returncode, err) == (status, "")
+    if "here" in arguments:
+        assert written(tmp_path / "here") == FILES
+
+
+def test_a_terminal_without_greek_is_no_reason_to_fail(tmp_path: Path) -> None:
+    code = "import os, sys\nsys.stdout.reconfigure(encoding='ascii')\n" + MAIN
+    plain = process(code, tmp_path, "sensors", "bmp390")
+    out, err = plain.communicate(timeout=60)
+    assert (plain.returncode, err) == (0, "")
+    assert out.isascii()
+    assert "rate limit" in out
+
+
+def test_a_closed_output_is_no_reason_to_fail(tmp_path: Path) -> None:
+    closed = process("import os\nos.close(1)\nimport sys\nsys.stdout = None\n" + MAIN, tmp_path, "scenarios")
+    _, err = closed.communicate(timeout=60)
+    assert (closed.returncode, err) == (0, "")
+
+
+# -- progress --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("terminal", "patience", "shown"), [(True, -1.0, True), (True, 60.0, False), (False, -1.0, False)]
+)
+def test_progress_is_shown_on_a_terminal_to_those_who_wait(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], terminal: bool, patience: float, shown: bool
+) -> None:
+    monkeypatch.setattr(cli, "PATIENCE", patience)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    with cli._Bar("flying") as bar:
+        bar.show(0.5)
+        bar.show(0.9)
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert ("flying" in err) is shown
