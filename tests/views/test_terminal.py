@@ -1,0 +1,250 @@
+"""Tables in the terminal: figures with their units, in 80 columns, the same in a pipe, colour only if it is wanted."""
+
+import dataclasses
+import io
+import re
+import sys
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from sensors import presets
+from sensors.catalogue import FOLDER, accelerometer
+from uavsim.flight import Flight
+from uavsim.scenario import Scenario
+from uavsim.studies.batch import Batch
+from uavsim.studies.cost import Cost
+from uavsim.studies.quantiles import quantile_band
+from uavsim.views import terminal
+
+ANSI = re.compile(r"\x1b\[[0-9;]*m")
+
+
+@pytest.fixture(autouse=True)
+def _plain(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    for name in ("FORCE_COLOR", "NO_COLOR", "CLICOLOR_FORCE", "TTY_COMPATIBLE"):
+        monkeypatch.delenv(name, raising=False)
+
+
+class Screen(io.StringIO):
+    """A terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def widest(text: str) -> int:
+    return max(len(line) for line in text.splitlines())
+
+
+def changed(flight: Flight, **score: Any) -> Flight:
+    return dataclasses.replace(flight, score={**flight.score, **score})
+
+
+def batch(flights: int) -> Batch:
+    generator = np.random.default_rng(1)
+    names = [
+        "launch.latency", "launch.latency_from_crossing", "flight.rail_exit_speed", "airspeed.rmse",
+        "airspeed.reduction_percent", "airspeed.stroke.reduction_percent", "airspeed.cruise.reduction_percent",
+        "airspeed.cruise.coverage_95",
+    ]  # fmt: skip
+    runs = pd.DataFrame({name: generator.normal(0.02, 0.001, flights) for name in names})
+    runs["airspeed.stroke.reduction_percent"] -= 1000.0
+    runs["outcome"] = ["cruise"] * (flights - 1) + ["missed_launch"]
+    runs["launch.false_detections"] = 2
+    runs["requirements.met"] = [True] * (flights - 1) + [False]
+    return Batch(Scenario(name="a name"), runs, [], {}, complete=True, wall_time=1.0)
+
+
+# -- one flight ------------------------------------------------------------------------------------------------------
+
+
+def test_a_score_shows_its_figures_with_units_in_80_columns(
+    catapult: Flight, capsys: pytest.CaptureFixture[str]
+) -> None:
+    terminal.print_score(catapult)
+    out = capsys.readouterr().out
+    score = catapult.score
+    assert "\x1b" not in out
+    assert widest(out) <= 80
+    assert "catapult, seed 1: cruise (as expected)" in out
+    for value, unit in (
+        (f"{score['launch']['release_time']:.3f}", "s"),
+        (f"{1e3 * score['launch']['latency']:.1f}", "ms"),
+        (f"{score['flight']['rail_exit_speed']:.2f}", "m/s"),
+        (f"{score['flight']['lowest_altitude_after_exit']:.2f}", "m"),
+    ):
+        assert re.search(rf" {re.escape(value)} +{unit}( |$)", out, re.MULTILINE)
+    row = next(line for line in out.splitlines() if line.startswith("RMSE filtered, m/s"))
+    figures = [score["airspeed"]["rmse"], *(score["airspeed"][p]["rmse"] for p in ("stroke", "transition", "cruise"))]
+    assert row.split()[3:] == [f"{figure:.3f}" for figure in figures]
+    for requirement in score["requirements"]:
+        line = next(line for line in out.splitlines() if line.startswith(requirement["key"]))
+        assert line.split()[-1] == "yes"
+
+
+def test_what_does_not_exist_is_a_dash_and_not_a_nought(
+    weak_launch: Flight, capsys: pytest.CaptureFixture[str]
+) -> None:
+    terminal.print_score(weak_launch)
+    out = capsys.readouterr().out
+    assert "missed_launch (as expected)" in out
+    assert re.search(r"^latency +– +ms", out, re.MULTILINE)
+    assert re.search(r"wing out +– +s", out)
+    assert widest(out) <= 80
+    assert "nan" not in out
+    assert "None" not in out
+
+
+def test_an_unexpected_outcome_says_what_was_expected(catapult: Flight, capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.print_score(changed(catapult, outcome="crashed"))
+    assert "crashed (expected: cruise)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "value", "met", "row"),
+    [
+        (1.0, None, 0.5, False, "≥ 1 0.5 NO"),
+        (None, 1.0, 0.5, True, "≤ 1 0.5 yes"),
+        (0.25, 1.0, 0.5, True, "0.25 … 1 0.5 yes"),
+        (None, None, 0.5, True, "a number 0.5 yes"),
+        (None, 0, None, False, "≤ 0 – NO"),
+        (None, 1e6, 123456.789, True, "≤ 1e+06 1.235e+05 yes"),
+    ],
+)
+def test_requirements(
+    catapult: Flight,
+    capsys: pytest.CaptureFixture[str],
+    low: float | None,
+    high: float | None,
+    value: float | None,
+    met: bool,
+    row: str,
+) -> None:
+    wanted = {"key": "airspeed.[x]", "minimum": low, "maximum": high, "value": value, "met": met}
+    terminal.print_score(changed(catapult, requirements=[wanted]))
+    line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("airspeed.[x]"))
+    assert " ".join(line.split()[1:]) == row
+
+
+@pytest.mark.parametrize("columns", [20, 80, 300])
+def test_the_width_of_the_terminal_cuts_no_figure(
+    catapult: Flight, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, columns: int
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    terminal.print_score(catapult)
+    out = capsys.readouterr().out
+    assert f"{catapult.score['airspeed']['cruise']['rmse']:.3f}\n" in out
+    assert widest(out) <= max(80, min(columns, terminal.WIDEST))
+
+
+@pytest.mark.parametrize(("variable", "colour"), [("", True), ("NO_COLOR", False)])
+def test_colour_is_for_terminals_that_want_it(
+    catapult: Flight, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], variable: str, colour: bool
+) -> None:
+    terminal.print_score(catapult)
+    piped = capsys.readouterr().out
+    screen = Screen()
+    monkeypatch.setattr(sys, "stdout", screen)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    if variable:
+        monkeypatch.setenv(variable, "1")
+    terminal.print_score(catapult)
+    assert ("\x1b[1;32m" in screen.getvalue()) is colour
+    assert ANSI.sub("", screen.getvalue()) == piped
+
+
+# -- several flights -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("flights", [1, 8, 400])
+def test_several_flights_fit_80_columns(capsys: pytest.CaptureFixture[str], flights: int) -> None:
+    flown = batch(flights)
+    terminal.print_batch(flown)
+    out = capsys.readouterr().out
+    assert widest(out) <= 80
+    assert f"a name, {flights} flights: " in out
+    assert f"False detections before release: {2 * flights}" in out
+    assert "a requirement that is not met: 1" in out
+    lines = out.splitlines()
+    at = next(i for i, line in enumerate(lines) if line.startswith("latency, ms"))
+    sample = 1e3 * flown.runs["launch.latency"].to_numpy()
+    quantiles = [quantile_band(sample, q) for q in (0.05, 0.5, 0.95)]
+    values = [sample.min(), *(q.value for q in quantiles), sample.max()]
+    assert lines[at].split()[2:] == [f"{value:.1f}" for value in values]
+    for q in quantiles:
+        low, high = ("" if bound is None else f"{bound:.1f}" for bound in (q.low, q.high))
+        band = f"{low}…{high}" if low and high else f"≥ {low}" if low else f"≤ {high}" if high else "–"
+        assert band in lines[at + 1]
+
+
+def test_figures_that_no_flight_has_are_left_out(capsys: pytest.CaptureFixture[str]) -> None:
+    flown = batch(3)
+    flown.runs["launch.latency"] = np.nan
+    terminal.print_batch(flown)
+    out = capsys.readouterr().out
+    assert "latency, ms" not in out
+    assert "nan" not in out
+    assert "RMSE filtered, m/s" in out
+
+
+# -- sensors and cost ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", presets())
+def test_a_preset_shows_every_value_with_unit_and_source(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.print_preset(name)
+    out = capsys.readouterr().out
+    body = out.split("\n\n", 1)[1]
+    assert widest(body) <= 80
+    sheet = terminal._datasheet(name)
+    flat = re.sub(r"\W+", "", body)
+    for key in sheet["values"]:
+        assert terminal._words(key) in body
+    for source in sheet["sources"].values():
+        assert re.sub(r"\W+", "", source)[:12] in flat
+    assert "_" not in "".join(line.split("  ")[0] for line in body.splitlines())
+
+
+def test_units_of_a_preset_are_those_that_are_read(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.print_preset("lsm6dso32")
+    out = capsys.readouterr().out
+    part = accelerometer("lsm6dso32")
+    assert re.search(r"^ranges +4, 8, 16, 32 g ", out, re.MULTILINE)
+    assert re.search(rf"^default rate +{part.rate:g} Hz ", out, re.MULTILINE)
+    assert re.search(r"^noise density +120, 130, 160, 220 ", out, re.MULTILINE)
+    assert "µg/√Hz" in out
+
+
+def test_every_unit_belongs_to_a_key_that_exists() -> None:
+    keys: set[str] = set()
+    for file in FOLDER.glob("*.toml"):
+        sheet = terminal._datasheet(file.stem)
+        keys |= {*sheet["values"], *(key for mode in sheet.get("modes", []) for key in mode)}
+    assert set(terminal.PRESET_UNITS) <= keys
+    without = {"default_mode", "iir_coefficients", "iir_weights", "scale", "scale_limit", "name"}
+    assert keys - set(terminal.PRESET_UNITS) == without
+
+
+def test_an_unknown_preset_is_named() -> None:
+    with pytest.raises(ValueError, match="nearest: adxl345"):
+        terminal.print_preset("adxl")
+
+
+def test_presets_are_a_line_each(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.print_presets()
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == presets()
+
+
+def test_the_last_line_of_a_cost_is_its_ratio(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.print_cost(Cost(15.0, 10.0, 5.0, ratio=1.504, ratio_over_bare=3.0, steps=7, same_state=True))
+    assert capsys.readouterr().out.splitlines()[-1] == "ratio 1.50"
+
+
+def test_a_line_is_printed_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    line = "written to [red]output[/red]/" + "x" * 300 + " 123"
+    terminal.say(line)
+    assert capsys.readouterr().out == line + "\n"
