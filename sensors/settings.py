@@ -123,7 +123,7 @@ class AirDataSettings:
     tare_duration : float
         Length of the mean that the tare is, s.
     cover_off : float
-        Time before release at which the cover is taken off, s.
+        Time before release at which the tare ends and the cover, if there is one, is taken off, s.
     """
 
     total: PressureSettings = field(default_factory=PressureSettings)

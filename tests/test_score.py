@@ -397,7 +397,7 @@ def pressed(tare: str, *, tare_taken: float, total: float = 120.0, static: float
     free_total = np.where(t < RELEASE, 100_500.0 + wind, 101_000.0)
     covered = (t < RELEASE - 0.5) & (tare == "covered")
     port = np.where(covered, 100_500.0, free_total)
-    tared_from = {"covered": RELEASE - 0.5, "open": RELEASE, "none": math.inf}[tare]
+    tared_from = {"covered": RELEASE - 0.5, "open": RELEASE - 0.5, "none": math.inf}[tare]
     estimate = estimated(t, truth)
     estimate["p_total"] = port + total + sign - np.where(t > tared_from, tare_taken, 0.0)
     estimate["p_static"] = 100_500.0 + static + sign

@@ -34,7 +34,6 @@ STEP_RATE = 1000.0  # Hz, of the plant
 CHUNK = 500  # steps between two looks at the progress
 DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recorded
 DETECTOR_TRAIL = 0.1  # s after recognition until which it is
-MISSED_AFTER = 0.5  # s after the rail's end until which a launch may be recognised
 
 Reading = tuple[float, float, float, float]
 """t, fx, fy, fz."""
@@ -97,11 +96,8 @@ class Onboard:
     def __init__(self, scenario: Scenario, release_time: float) -> None:
         air = scenario.air_data
         rate = scenario.accelerometer.description().rate
-        tare = {
-            "covered": (release_time - air.cover_off - air.tare_duration, release_time - air.cover_off),
-            "open": (release_time - air.tare_duration, release_time),
-            "none": None,
-        }[air.tare]
+        end = release_time - air.cover_off  # the crew's countdown: the tare is over when the cover is off
+        tare = None if air.tare == "none" else (end - air.tare_duration, end)
         self._release_time = release_time
         self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
         self.computer = FlightComputer(

@@ -261,13 +261,11 @@ def _pressure(flight: Judged, channel: str) -> dict[str, Any]:
     air = flight.scenario["air_data"]
     exist = np.isfinite(error) & np.isfinite(raw)
     before, rows = exist & (time < flight.release_time), exist & flight.rows(time)
-    if air["tare"] == "covered":  # the cover keeps the wind out, so only what follows it compares with the free stream
+    if air["tare"] != "none":  # compare with the free stream, and with the tare taken off, only from the cover's end on
         before &= time > flight.release_time - air["cover_off"]
     if not before.any():
         return dict.fromkeys(("rmse", "rmse_raw", "reduction_percent", "bias"))
     bias = error[before].mean()
-    if channel == "total" and air["tare"] == "open":
-        bias -= _open_tare(flight)
     rmse, rmse_raw = _rms(error[rows] - bias), _rms(raw[rows] - raw[before].mean())
     return {
         "rmse": rmse,
@@ -282,15 +280,6 @@ def _reading(flight: Judged, name: str, time: Array) -> Array:
     readings = flight.tables["air_data"]
     at = np.searchsorted(np.asarray(readings["t"], dtype=float), time, side="right") - 1
     return np.asarray(readings[name], dtype=float)[np.maximum(at, 0)]
-
-
-def _open_tare(flight: Judged) -> float:
-    """Return what a tare in the open takes off p_total from release on, Pa; the rows before do not have it yet."""
-    end = flight.release_time
-    time = np.asarray(flight.tables["air_data"]["t"], dtype=float)
-    rows = (time > end - flight.scenario["air_data"]["tare_duration"]) & (time <= end)
-    difference = _reading(flight, "p_total", time[rows]) - _reading(flight, "p_static", time[rows])
-    return float(difference[np.isfinite(difference)].mean()) if np.isfinite(difference).any() else 0.0
 
 
 def _flight(flight: Judged) -> dict[str, Any]:

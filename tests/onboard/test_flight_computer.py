@@ -265,6 +265,19 @@ def test_a_gap_adds_no_more_speed_than_its_longest_step() -> None:
     assert "not_a_launch" in events(box)
 
 
+@pytest.mark.parametrize("late", [2.1, NAN])
+def test_readings_that_come_late_or_without_a_time_count_no_time(late: float) -> None:
+    """One at 2.1 s after each of those from 2.2 to 2.3 s, and on the rail: the speed gained stays what it was."""
+    plain, disturbed = computer(2.02), computer(2.02)
+    for box in (plain, disturbed):
+        for k in range(2500):
+            t = k / RATE
+            box.accelerometer(t, 8.0 * G if 2.0 <= t < 2.4 else REST if t < 2.0 else -1.0, 0.0, -9.6)
+            if box is disturbed and (2.2 <= t < 2.3 or (math.isnan(late) and t < 1.0)):
+                box.accelerometer(late, 8.0 * G, 0.0, -9.6)
+    assert gained(disturbed) == pytest.approx(gained(plain), rel=1e-12)
+
+
 def test_the_same_stroke_read_at_another_rate_gives_the_same() -> None:
     box = FlightComputer(SETTINGS, Spotter(2.02), Oracle(), 500.0)
     feed(box, REST, 0.0, 2.0, rate=500.0)

@@ -230,3 +230,15 @@ def test_turbulence_follows_its_seed() -> None:
 
 def test_mass_is_what_the_aircraft_weighs(catapult: JsbsimPlant) -> None:
     assert catapult.row[7] * SLUG == pytest.approx(8.0, abs=0.3)
+
+
+def test_a_flight_that_diverges_beyond_sound_still_gives_its_record() -> None:
+    """The truth's equations take any Mach number; that the state is no longer finite is told, not raised."""
+    plant = JsbsimPlant(JsbsimSettings(AircraftSettings(), EnvironmentSettings(), LauncherSettings(), 0.2, RELEASE))
+    for k in range(100):
+        if k == 97:
+            plant._set("atmosphere/wind-north-fps", 1e9)
+        plant.step()
+    truth = plant.truth()
+    assert truth["mach"].max() > 1.0
+    assert len(truth["p_total"]) == 101

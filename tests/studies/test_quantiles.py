@@ -74,3 +74,9 @@ def test_equal_values_give_a_band_of_no_width() -> None:
 def test_what_has_no_band_is_refused(sample: list[float], quantile: float, confidence: float) -> None:
     with pytest.raises(ValueError, match=r"at least one|between 0 and 1"):
         quantile_band(np.array(sample), quantile, confidence)
+
+
+@pytest.mark.parametrize("sample", [[], [1.0, np.nan], [np.inf, 2.0]])
+def test_a_quantile_needs_finite_values(sample: list[float]) -> None:
+    with pytest.raises(ValueError, match="finite"):
+        quantile_band(np.array(sample), 0.5)

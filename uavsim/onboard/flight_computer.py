@@ -22,7 +22,7 @@ Sees readings and time, never truth. Scalar, constant memory.
 
 from collections import deque
 from dataclasses import dataclass
-from math import isfinite, radians
+from math import isfinite, isnan, radians
 from typing import Annotated, Any, Protocol
 
 from annotated_types import Interval
@@ -197,6 +197,8 @@ class FlightComputer:
 
     def _average_rail(self, t: float, fx: float) -> None:
         """Block means of f_x on the rail; the one before the last holds nothing of a stroke that has just begun."""
+        if isnan(fx) or isnan(t):
+            return
         if self._block_start is None:
             self._block_start = t
         elif t - self._block_start >= RAIL_BLOCK and self._block_count:
@@ -204,9 +206,8 @@ class FlightComputer:
             older = self._rail_means[1] if self._rail_means != (0.0, 0.0) else mean
             self._rail_means = (older, mean)
             self._block_start, self._block_sum, self._block_count = t, 0.0, 0
-        if fx == fx:  # not NaN
-            self._block_sum += fx
-            self._block_count += 1
+        self._block_sum += fx
+        self._block_count += 1
 
     def _detected(self, t: float) -> None:
         self._note(t, "launch_detected")
@@ -217,9 +218,9 @@ class FlightComputer:
         self._recent.clear()
 
     def _follow_stroke(self, t: float, fx: float) -> None:
-        if fx != fx:
+        if isnan(fx) or not t > self._last:  # a late reading, or one without a time, counts no time
             return
-        self._speed_gain += (fx - self._rail_means[0]) * min(max(t - self._last, 0.0), LONGEST_STEP)
+        self._speed_gain += (fx - self._rail_means[0]) * min(t - self._last, LONGEST_STEP)
         self._last = t
         recent = self._recent
         recent.append(fx)

@@ -427,7 +427,7 @@ class JsbsimPlant:
         raw["north"] = raw["north"] - self._datum[_INDEX["north"]] * FT
         raw["east"] = raw["east"] - self._datum[_INDEX["east"]] * FT
         raw["rail_s"] = self._travel(raw)
-        raw["p_total"] = np.asarray(airdata.total_pressure(static=raw["p_static"], mach=raw["mach"]))
+        raw["p_total"] = airdata.isentropic_total(raw["p_static"], raw["mach"], np)  # unchecked: it may have diverged
         return raw
 
     def _travel(self, c: dict[str, Array]) -> Array:

@@ -40,8 +40,8 @@ def quantile_band(sample: NDArray[np.float64], probability: float, confidence: f
     """
     from scipy.stats import binom  # noqa: PLC0415 (a third of a second that most commands do not need)
 
-    if sample.size == 0:
-        raise ValueError("a quantile needs at least one value")
+    if sample.size == 0 or not np.all(np.isfinite(sample)):
+        raise ValueError("a quantile needs at least one value, and finite ones")
     if not 0.0 < probability < 1.0 or not 0.0 < confidence < 1.0:
         raise ValueError("probabilities must lie between 0 and 1")
     ordered = np.sort(sample)
