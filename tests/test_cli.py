@@ -261,6 +261,15 @@ def test_wrong_input_is_2_with_one_line_and_nothing_written(
     assert set(tmp_path.rglob("*")) == before
 
 
+def test_nothing_is_flown_in_vain(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A place that cannot be written is told before the flight."""
+    monkeypatch.setattr(cosim.Cosimulation, "__init__", lambda *_: pytest.fail("set up a flight"))
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine").touch()
+    assert run("fly", "--out", "full").status == 2
+    assert run("fly", "--out", "full", "--seeds", "1-2").status == 2
+
+
 def test_a_flight_may_be_written_over_only_if_that_is_asked_for(run: Run, tmp_path: Path) -> None:
     arguments = ("fly", *SHORT, "--out", "here")
     assert run(*arguments, "--seed", "1").status == 0

@@ -227,9 +227,11 @@ def test_overwriting_spares_what_is_not_a_flights(short: Flight, tmp_path: Path)
     (tmp_path / "letters" / "to-a-friend").write_text("dear")
     (tmp_path / "notes.txt").write_text("mine")
     number = tmp_path.stat().st_ino
-    short.save(tmp_path, overwrite=True)
+    places: list[Path] = []
+    short.save(tmp_path, overwrite=True, extra=places.append)
     assert everything(tmp_path) == {*FILES, "letters", "letters/to-a-friend", "notes.txt"}
     assert tmp_path.stat().st_ino == number  # one may stand in it, or it may be mounted: it stays the same folder
+    assert [place.parent for place in places] == [tmp_path]  # and a mounted one may lie in one that cannot be written
 
 
 def test_a_failed_overwrite_leaves_the_old_flight(short: Flight, folder: Path) -> None:

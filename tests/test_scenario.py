@@ -184,6 +184,38 @@ def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert complaint(file=file) == f"{file}: cannot be read: Permission denied"
 
 
+def test_a_name_with_a_line_end_in_it_does_not_break_the_line() -> None:
+    assert "aircraft.properties.a b = 'x': must be a number" in complaint({"aircraft": {"properties": {"a\nb": "x"}}})
+
+
+@pytest.mark.parametrize(("bias", "limit"), [("0.0", 298.71), ("5", 293.71), ("[0, 0, -5]", 293.71)])
+def test_the_limit_of_a_threshold_is_what_the_accelerometer_surely_shows(bias: str, limit: float) -> None:
+    """LSM6DSO32 at ±32 g: 32 g less 3 × 0.5 % of scale, 3 × 20 mg of offset, 1 g of gravity and the bias that is given."""
+    exact = 32 * 9.80665 * 0.985 - 0.06 * 9.80665 - 9.80665 - (298.71 - limit)
+    assert exact == pytest.approx(limit, abs=0.01)
+    for threshold, fits in ((exact - 0.01, True), (exact + 0.01, False)):
+        sets = [f"accelerometer.bias={bias}", f"detector.threshold={threshold}"]
+        if fits:
+            load_scenario("catapult", overrides=sets)
+        else:
+            assert f"the limit is {exact:.1f} m/s²" in complaint(sets=sets)
+
+
+@pytest.mark.parametrize(
+    ("tare", "duration", "cover", "fits"),
+    [
+        ("covered", 1.5, 0.5, True), ("covered", 1.6, 0.5, False), ("covered", 0.5, 1.6, False),
+        ("open", 2.0, 0.5, True), ("open", 2.1, 0.0, False), ("none", 60.0, 60.0, True),
+    ],
+)  # fmt: skip
+def test_a_tare_must_fit_into_the_shortest_wait(tare: str, duration: float, cover: float, fits: bool) -> None:
+    sets = [f"air_data.tare={tare}", f"air_data.tare_duration={duration}", f"air_data.cover_off={cover}"]
+    if fits:
+        assert load_scenario("catapult", overrides=sets).air_data.tare == tare
+    else:
+        assert "must fit into the shortest wait, launcher.wait_min = 2 s" in complaint(sets=sets)
+
+
 def test_the_line_blames_whoever_gave_the_key(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text("[launcher]\nwait_min = 2.5\n[air_data]\ntare_duration = 2.0\n")

@@ -283,7 +283,7 @@ def _place(out: Path | None, name: str, *, overwrite: bool) -> Path:
     while out is None and target.exists() and (not target.is_dir() or any(target.iterdir())):
         number += 1
         target = Path("output") / f"{name}-{number}"
-    claim(target, overwrite=overwrite and out is not None)
+    claim(target, overwrite=overwrite)
     return target
 
 

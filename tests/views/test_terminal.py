@@ -198,7 +198,8 @@ def test_figures_that_no_flight_has_are_left_out(capsys: pytest.CaptureFixture[s
 def test_a_preset_shows_every_value_with_unit_and_source(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     terminal.print_preset(name)
     out = capsys.readouterr().out
-    body = out.split("\n\n", 1)[1]
+    head, body = out.split("\n\n", 1)
+    assert head.splitlines() == [f"{name}: {terminal._datasheet(name)['part']}", terminal._datasheet(name)["document"]]
     assert widest(body) <= 80
     sheet = terminal._datasheet(name)
     flat = re.sub(r"\W+", "", body)
