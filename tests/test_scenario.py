@@ -190,7 +190,7 @@ def test_a_name_with_a_line_end_in_it_does_not_break_the_line() -> None:
 
 @pytest.mark.parametrize(("bias", "limit"), [("0.0", 298.71), ("5", 293.71), ("[0, 0, -5]", 293.71)])
 def test_the_limit_of_a_threshold_is_what_the_accelerometer_surely_shows(bias: str, limit: float) -> None:
-    """LSM6DSO32 at ±32 g: 32 g less 3 × 0.5 % of scale, 3 × 20 mg of offset, 1 g of gravity and the bias that is given."""
+    """LSM6DSO32 at ±32 g: 32 g less 3 × 0.5 % of scale, 3 × 20 mg of offset, 1 g of gravity and the given bias."""
     exact = 32 * 9.80665 * 0.985 - 0.06 * 9.80665 - 9.80665 - (298.71 - limit)
     assert exact == pytest.approx(limit, abs=0.01)
     for threshold, fits in ((exact - 0.01, True), (exact + 0.01, False)):
