@@ -210,13 +210,11 @@ def print_batch(flown: "Batch") -> None:
     summary = ", ".join(f"{count} {name}" for name, count in runs["outcome"].value_counts().items())
     false = int(runs["launch.false_detections"].sum())
     unmet = int((~runs["requirements.met"].astype(bool)).sum())
-    _print(
-        console,
-        f"\n[bold]{escape(flown.scenario.name)}[/bold], {len(runs)} flights: {summary}\n",
-        _quantile_table(flown),
-        f"\nFalse detections before release: {false}",
-        f"Flights with a requirement that is not met: {unmet}",
-    )
+    _print(console, f"\n[bold]{escape(flown.scenario.name)}[/bold], {len(runs)} flights: {summary}\n")
+    table = _quantile_table(flown)
+    if table.row_count:
+        _print(console, table, "")
+    _print(console, f"False detections before release: {false}", f"Flights with a requirement that is not met: {unmet}")
 
 
 def _quantile_table(flown: "Batch") -> Table:
