@@ -189,7 +189,7 @@ def test_figures_that_no_flight_has_are_left_out(capsys: pytest.CaptureFixture[s
     assert "latency, ms" not in out
     assert "nan" not in out
     assert "RMSE filtered, m/s" in out
-    flown.runs.loc[:, flown.runs.dtypes == float] = np.nan
+    flown.runs[flown.runs.select_dtypes(float).columns] = np.nan
     terminal.print_batch(flown)
     assert "Quantiles" not in capsys.readouterr().out
 
