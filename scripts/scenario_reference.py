@@ -81,7 +81,9 @@ def _rows(prefix: str, kind: type) -> Iterator[str]:
 
 def _requirements() -> str:
     meaning = " ".join((getdoc(Requirement) or "").split())
-    return f"\n## `[[requirements]]`\n{meaning} Each has the keys `key`, `minimum`, `maximum`; see [score.md](score.md).\n"
+    return (
+        f"\n## `[[requirements]]`\n{meaning} Each has the keys `key`, `minimum`, `maximum`; see [score.md](score.md).\n"
+    )
 
 
 def _meanings(kind: type) -> Iterator[tuple[str, str]]:

@@ -57,7 +57,7 @@ def record_at_rest(name: str, *, duration: float, seed: int, unit: Unit = "rando
     >>> round(float(frame["fz"].mean()), 1)
     -9.8
     """
-    import pandas as pd  # late: it takes half a second  # noqa: PLC0415
+    import pandas as pd  # late: it takes half a second
 
     if not 0.0 < duration < float("inf"):
         raise ValueError(f"duration must be positive, not {duration!r}")

@@ -13,6 +13,7 @@ from sensors import catalogue
 from sensors.description import AccelerometerDescription, PressureDescription
 
 Tare = Literal["covered", "open", "none"]
+Band = Annotated[float, Interval(gt=0.0, lt=500.0)]  # Hz, below half of the plant's 1 kHz
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class VibrationSettings:
     waiting_rms_g: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.05
     stroke_rms_g: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.3
     flight_rms_g: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.05
-    band_hz: tuple[Annotated[float, Gt(0.0)], Annotated[float, Gt(0.0)]] = (5.0, 200.0)
+    band_hz: tuple[Band, Band] = (5.0, 200.0)
     ring_hz: Annotated[float, Interval(gt=0.0, le=10000.0)] = 120.0
     ring_fraction: Annotated[float, Interval(ge=0.0, le=5.0)] = 0.3
     ring_decay: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.05

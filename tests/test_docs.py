@@ -17,7 +17,7 @@ def test_scenario_page_is_what_the_settings_declare(monkeypatch: pytest.MonkeyPa
     """A failure means that a setting changed: run `scripts/scenario_reference.py`."""
     monkeypatch.syspath_prepend(str(ROOT / "scripts"))
     monkeypatch.delitem(sys.modules, "scenario_reference", raising=False)
-    import scenario_reference  # noqa: PLC0415
+    import scenario_reference
 
     page = scenario_reference.PAGE.read_text(encoding="utf-8")
     assert page == scenario_reference.page()
@@ -32,7 +32,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 def test_readme_names_only_commands_that_exist() -> None:
-    from uavsim.cli import app  # noqa: PLC0415
+    from uavsim.cli import app
 
     known = {command.callback.__name__ for command in app.registered_commands if command.callback}
     named = set(re.findall(r"`(?:\.venv/bin/)?uavsim ([a-z]+)", (ROOT / "README.md").read_text(encoding="utf-8")))

@@ -43,7 +43,7 @@ def test_the_names_of_the_package_are_there_when_they_are_used() -> None:
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:
-    import uavsim  # noqa: PLC0415
+    import uavsim
 
     with pytest.raises(AttributeError, match="no attribute 'flies'"):
         _ = uavsim.flies
@@ -62,7 +62,7 @@ def test_onboard_loads_nothing_of_the_truth() -> None:
 
 
 def test_a_replay_needs_no_jsbsim(tmp_path: Path) -> None:
-    import uavsim  # noqa: PLC0415
+    import uavsim
 
     folder = tmp_path / "flight"
     uavsim.fly("catapult", overrides=["duration=5"]).save(folder)

@@ -70,7 +70,7 @@ def uavsim(
       uavsim bench
     """  # noqa: D301 (click reads \b: keep these lines)
     if version:
-        from uavsim import __version__  # noqa: PLC0415 (each command loads only what it needs)
+        from uavsim import __version__
 
         typer.echo(f"uavsim {__version__}")
     elif context.invoked_subcommand is None:
@@ -83,7 +83,7 @@ def scenarios() -> None:
 
     Example: uavsim scenarios
     """
-    from uavsim.scenario import packaged  # noqa: PLC0415 (each command loads only what it needs)
+    from uavsim.scenario import packaged
 
     known = packaged()
     width = max(map(len, known))
@@ -110,7 +110,7 @@ def fly(
 
     Example: uavsim fly gusty --seeds 1-50 --out output/gusty-50
     """
-    from uavsim.scenario import load_scenario  # noqa: PLC0415
+    from uavsim.scenario import load_scenario
 
     if seed is not None and seeds is not None:
         raise typer.BadParameter("give --seed or --seeds, not both")
@@ -131,19 +131,16 @@ def fly(
 
 def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation":
     """Set a flight up: only JSBSim knows whether an aircraft has the properties that are asked for."""
-    from uavsim.cosim import Cosimulation  # noqa: PLC0415
+    from uavsim.cosim import Cosimulation
 
     where = "--set" if any(g.strip().startswith("aircraft.") for g in given) else scenario.name
     with _input(f"{where}: "):
-        try:
-            return Cosimulation(scenario)
-        except RuntimeError as error:  # what JSBSim raises on files that it cannot parse
-            raise ValueError(f"aircraft.model: {error}") from error
+        return Cosimulation(scenario)
 
 
 def _fly_one(simulation: "Cosimulation", place: Callable[[], Path], *, plots: bool, overwrite: bool) -> None:
-    from uavsim.cosim import CHUNK  # noqa: PLC0415
-    from uavsim.views import terminal  # noqa: PLC0415
+    from uavsim.cosim import CHUNK
+    from uavsim.views import terminal
 
     with _Bar(f"flying {simulation.scenario.name}, seed {simulation.scenario.seed}") as bar:
         while not simulation.ended:
@@ -159,9 +156,9 @@ def _fly_one(simulation: "Cosimulation", place: Callable[[], Path], *, plots: bo
 def _fly_many(
     scenario: "Scenario", numbers: list[int], place: Callable[[], Path], *, plots: bool, overwrite: bool
 ) -> None:
-    from uavsim.studies.batch import fly_seeds  # noqa: PLC0415
-    from uavsim.views import batch as view  # noqa: PLC0415
-    from uavsim.views import terminal  # noqa: PLC0415
+    from uavsim.studies.batch import fly_seeds
+    from uavsim.views import batch as view
+    from uavsim.views import terminal
 
     with _Bar(f"flying {scenario.name}") as bar:
         flown = fly_seeds(scenario, numbers, progress=lambda done, all_: bar.show(done / all_))
@@ -190,10 +187,10 @@ def replay(
 
     Example: uavsim replay output/catapult-1 --out output/again
     """
-    from uavsim.cosim import replay as replay_flight  # noqa: PLC0415
-    from uavsim.flight import load  # noqa: PLC0415
-    from uavsim.scenario import Scenario  # noqa: PLC0415
-    from uavsim.views import terminal  # noqa: PLC0415
+    from uavsim.cosim import replay as replay_flight
+    from uavsim.flight import load
+    from uavsim.scenario import Scenario
+    from uavsim.views import terminal
 
     name = f"{flight.resolve().name}-replay"
     with _input():
@@ -218,7 +215,7 @@ def sensors(
 
     Example: uavsim sensors bmp390
     """
-    from uavsim.views import terminal  # noqa: PLC0415
+    from uavsim.views import terminal
 
     if name is None:
         terminal.print_presets()
@@ -237,9 +234,9 @@ def bench(
 
     Example: uavsim bench
     """
-    from uavsim.scenario import load_scenario  # noqa: PLC0415
-    from uavsim.studies.cost import measure  # noqa: PLC0415
-    from uavsim.views import terminal  # noqa: PLC0415
+    from uavsim.scenario import load_scenario
+    from uavsim.studies.cost import measure
+    from uavsim.views import terminal
 
     with _input(), _Bar("measuring") as bar:
         cost = measure(load_scenario(scenario), progress=bar.show)
@@ -277,7 +274,7 @@ def _named(numbers: list[int]) -> str:
 
 def _place(out: Path | None, name: str, *, overwrite: bool) -> Path:
     """Folder to write: the one asked for, or a free one below `output/`."""
-    from uavsim.flight import claim  # noqa: PLC0415
+    from uavsim.flight import claim
 
     target, number = out or Path("output") / name, 1
     while out is None and target.exists() and (not target.is_dir() or any(target.iterdir())):
@@ -289,7 +286,7 @@ def _place(out: Path | None, name: str, *, overwrite: bool) -> Path:
 
 def _plotter(flight: "Flight") -> Callable[[Path], None]:
     def draw(folder: Path) -> None:
-        from uavsim.views.plots import save_plots  # noqa: PLC0415 (matplotlib takes its time)
+        from uavsim.views.plots import save_plots
 
         save_plots(flight, folder / "plots")
 
@@ -319,8 +316,8 @@ class _Bar:
             self._progress.update(self._progress.task_ids[0], completed=share)
 
     def _start(self) -> "Progress":
-        from rich.console import Console  # noqa: PLC0415
-        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
         columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
         progress = Progress(*columns, console=Console(stderr=True), transient=True)
@@ -356,7 +353,7 @@ def main() -> None:
     except _UsageError as error:
         status = _complain(error.format_message())  # type: ignore[attr-defined]  # the class is known at run time only
     except (BrokenPipeError, SystemExit):  # the reader of our output left; click ends the program at that
-        from uavsim.views.terminal import mute  # noqa: PLC0415
+        from uavsim.views.terminal import mute
 
         mute()
         status = DONE

@@ -227,7 +227,7 @@ def believed_noise(scenario: Scenario) -> airspeed.NoiseModel:
 
 def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
     """Settings of the plant of a scenario's flight."""
-    from uavsim.plants.jsbsim import JsbsimSettings  # noqa: PLC0415 (a replay needs no JSBSim)
+    from uavsim.plants.jsbsim import JsbsimSettings
 
     return JsbsimSettings(
         aircraft=scenario.aircraft,
@@ -249,7 +249,7 @@ def make_plant(scenario: Scenario, draws: Draws) -> "JsbsimPlant":
     ValueError
         An aircraft or property that does not exist.
     """
-    from uavsim.plants.jsbsim import JsbsimPlant  # noqa: PLC0415
+    from uavsim.plants.jsbsim import JsbsimPlant
 
     return JsbsimPlant(plant_settings(scenario, draws))
 
@@ -285,7 +285,7 @@ def fly(
         One line that names file, key and what is allowed.
     """
     if isinstance(scenario, Scenario):
-        settings = scenario if seed is None else scenario.with_seed(seed)
+        settings = scenario.with_seed(scenario.seed if seed is None else seed)  # validates one that was made by hand
     else:
         settings = load_scenario(scenario, overrides=overrides, seed=seed)
     simulation = Cosimulation(settings)

@@ -168,7 +168,7 @@ def _read(file: Path, parse: Callable[[str], Any], kind: type) -> Any:
 
 
 def _read_table(name: str, file: Path) -> "pd.DataFrame":
-    import pandas as pd  # noqa: PLC0415 (half a second that an import of uavsim need not cost)
+    import pandas as pd
 
     try:
         table = pd.read_parquet(file)
@@ -182,14 +182,14 @@ def _read_table(name: str, file: Path) -> "pd.DataFrame":
 
 def frame(name: str, columns: "Mapping[str, np.ndarray]") -> "pd.DataFrame":
     """Table `name` from its columns, in the order of `UNITS`."""
-    import pandas as pd  # noqa: PLC0415
+    import pandas as pd
 
     return pd.DataFrame({column: columns[column] for column in UNITS[name]})
 
 
 def frame_of_rows(name: str, rows: list[tuple[Any, ...]]) -> "pd.DataFrame":
     """Table `name` from rows of numbers and flags."""
-    import pandas as pd  # noqa: PLC0415
+    import pandas as pd
 
     table = pd.DataFrame.from_records(rows, columns=list(UNITS[name]))
     return table if rows else table.astype(float)
@@ -197,8 +197,8 @@ def frame_of_rows(name: str, rows: list[tuple[Any, ...]]) -> "pd.DataFrame":
 
 def frame_of_floats(name: str, values: list[float]) -> "pd.DataFrame":
     """Table `name` from one flat list of floats, row after row."""
-    import numpy as np  # noqa: PLC0415
-    import pandas as pd  # noqa: PLC0415
+    import numpy as np
+    import pandas as pd
 
     names = list(UNITS[name])
     return pd.DataFrame(np.array(values, dtype=float).reshape(-1, len(names)), columns=names)
@@ -287,8 +287,8 @@ def _move(entries: Iterable[Path], folder: Path) -> None:
 
 def write_table(path: Path, table: "pd.DataFrame", units: Mapping[str, str]) -> None:
     """Write a Parquet file with each column's unit in its field metadata (`unit`)."""
-    import pyarrow as pa  # noqa: PLC0415
-    import pyarrow.parquet as pq  # noqa: PLC0415
+    import pyarrow as pa
+    import pyarrow.parquet as pq
 
     arrow = pa.Table.from_pandas(table, preserve_index=False)
     fields = [column.with_metadata({"unit": units.get(column.name, "")}) for column in arrow.schema]
@@ -302,7 +302,7 @@ def write_json(path: Path, value: object) -> None:
 
 def write_toml(path: Path, value: Mapping[str, Any]) -> None:
     """Write TOML; keys whose value is None are left out, as TOML has no null."""
-    import tomli_w  # noqa: PLC0415
+    import tomli_w
 
     path.write_text(tomli_w.dumps(without_none(value)), encoding="utf-8")
 

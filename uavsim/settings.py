@@ -59,7 +59,7 @@ def read(kind: type[T], values: Mapping[str, Any]) -> T:
     SettingError
         On the first thing that is wrong.
     """
-    from pydantic import ValidationError  # noqa: PLC0415 (only when something is read)
+    from pydantic import ValidationError
 
     declared: Any = kind
     _check_keys(values, declared, kind, "")
@@ -117,7 +117,7 @@ def unknown(kind: type, key: str) -> SettingError:
 
 @cache
 def _adapter(kind: Any) -> "TypeAdapter[Any]":
-    from pydantic import TypeAdapter  # noqa: PLC0415
+    from pydantic import TypeAdapter
 
     return TypeAdapter(kind)
 

@@ -19,7 +19,7 @@ def _fly(head, air, duration, dt=DT):
     """Rows polled while the truth is air(t)."""
     rows = []
     for k in range(1, round(duration / dt) + 1):
-        t0, t1 = (k - 1) * dt, k * dt
+        t1 = k * dt
         if head.due <= t1:
             rows += head.step(t1, air)
     return np.array(rows)

@@ -11,6 +11,7 @@ import pytest
 from matplotlib.axes import Axes
 from PIL import Image
 
+import uavsim
 from uavsim.flight import UNITS, Flight, load
 from uavsim.onboard.launch import DetectorSettings, build
 from uavsim.scenario import Scenario
@@ -318,3 +319,11 @@ def test_processor_features_are_those_of_floating_point(tmp_path: Path) -> None:
     cpuinfo.write_text("processor : 0\nflags\t\t: fpu sse4_2 avx2 fma ht avx\n\nflags : avx512f\n")
     assert batch.processor_features(cpuinfo) == ["avx", "avx2", "fma", "sse4_2"]
     assert batch.processor_features(tmp_path / "none") == []
+
+
+def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_path: Path) -> None:
+    """A mass that JSBSim cannot fly: two rows of truth, neither of them a number."""
+    heavy = "aircraft.properties.inertia/pointmass-weight-lbs=1e6"
+    flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", heavy])
+    assert flight.score["outcome"] == "diverged"
+    assert save_plots(flight, tmp_path) == []

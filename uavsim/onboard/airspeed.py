@@ -251,7 +251,7 @@ class PaperFilter:
             RandomWalk(settings.q_static, noise.static_sd**2),
         )
 
-    def step(  # noqa: PLR0917 (the columns of the head's table, in their order)
+    def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
         """Take one reading of the head and say what is known after it.
@@ -336,7 +336,7 @@ class FilterpyFilter(PaperFilter):
 
     @staticmethod
     def _channels(settings: EstimatorSettings, noise: NoiseModel) -> tuple[Channel, Channel]:
-        from filterpy.kalman import KalmanFilter  # noqa: PLC0415 (a second to import, with matplotlib and scipy)
+        from filterpy.kalman import KalmanFilter
 
         both = KalmanFilter(dim_x=2, dim_z=1)
         return (

@@ -21,7 +21,7 @@ from operator import itemgetter
 from typing import Any
 
 import numpy as np
-from jsbsim import FGFDMExec, FGLogger, FGPropertyNode, set_logger
+from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
 from numpy.typing import NDArray
 
 from uavsim import airdata
@@ -192,10 +192,14 @@ class JsbsimPlant:
         set_logger(_Silence())
         fdm = FGFDMExec(None)
         fdm.set_debug_level(0)
-        if not fdm.load_model_with_paths(
-            folder.name, str(folder.parent), str(folder / "engine"), str(folder / "systems"), True
-        ):
-            raise ValueError(f"aircraft {aircraft.model!r}: JSBSim cannot load {folder / (folder.name + '.xml')}")
+        try:
+            loaded = fdm.load_model_with_paths(
+                folder.name, str(folder.parent), str(folder / "engine"), str(folder / "systems"), True
+            )
+        except BaseError as error:
+            raise ValueError(f"aircraft.model: {error}") from error
+        if not loaded:
+            raise ValueError(f"aircraft.model: JSBSim cannot load {folder / (folder.name + '.xml')}")
         fdm.disable_output()
         fdm.set_dt(self.dt)
         for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
@@ -204,7 +208,9 @@ class JsbsimPlant:
 
     def _node(self, name: str) -> FGPropertyNode:
         if name not in self._catalogue:
-            raise ValueError(f"aircraft {self.settings.aircraft.model!r} lacks the property {name!r} that uavsim needs")
+            raise ValueError(
+                f"aircraft.model: {self.settings.aircraft.model!r} lacks the property {name!r} that uavsim needs"
+            )
         node = self._fdm.get_property_manager().get_node(name)
         assert node is not None, name  # it is in the catalogue
         return node
@@ -228,8 +234,12 @@ class JsbsimPlant:
         self._set("ic/theta-deg", launcher.elevation_deg)
         self._set("atmosphere/delta-T", air.temperature_offset / RANKINE)
         self._apply(s.aircraft.properties)
-        if not self._fdm.run_ic():
-            raise ValueError(f"aircraft {s.aircraft.model!r}: JSBSim cannot start from rest on the rail")
+        try:
+            started = self._fdm.run_ic()
+        except BaseError as error:  # a property that the aircraft's functions name and nothing sets
+            raise ValueError(f"aircraft.model: {error}") from error
+        if not started:
+            raise ValueError("aircraft.model: JSBSim cannot start it from rest on the rail")
         towards = radians(air.wind_from_deg) + pi
         self._set("atmosphere/wind-north-fps", air.wind_speed * np.cos(towards) / FT)
         self._set("atmosphere/wind-east-fps", air.wind_speed * np.sin(towards) / FT)

@@ -101,7 +101,7 @@ def fly_seeds(
         Rows and traces in the order of `seeds`, whatever order they finished in. An interrupt (Ctrl-C) ends it early:
         then it holds the flights that were finished, with `complete` false.
     """
-    import pandas as pd  # noqa: PLC0415
+    import pandas as pd
 
     started = time.monotonic()
     done: dict[int, Result] = {}

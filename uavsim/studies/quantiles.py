@@ -38,7 +38,7 @@ def quantile_band(sample: NDArray[np.float64], probability: float, confidence: f
     ValueError
         If the sample is empty or the probabilities lie outside (0, 1).
     """
-    from scipy.stats import binom  # noqa: PLC0415 (a third of a second that most commands do not need)
+    from scipy.stats import binom
 
     if sample.size == 0 or not np.all(np.isfinite(sample)):
         raise ValueError("a quantile needs at least one value, and finite ones")
@@ -95,7 +95,7 @@ def ecdf_band(sample: NDArray[np.float64], confidence: float = 0.95) -> EcdfBand
     ValueError
         If the sample is empty or holds NaN, or the confidence lies outside (0, 1).
     """
-    from scipy.stats import beta  # noqa: PLC0415
+    from scipy.stats import beta
 
     if sample.size == 0 or np.isnan(sample).any():
         raise ValueError("a distribution needs at least one value, and no NaN")

@@ -267,7 +267,7 @@ def _envelope(axes: "Axes", time: Array, values: Array, colour: str, name: str, 
 
 def _error_axes(speed: "Axes", share: "Axes", *errors: Array) -> None:
     """Scale the axes of an error and of a ratio of errors."""
-    from matplotlib.ticker import LogLocator  # noqa: PLC0415
+    from matplotlib.ticker import LogLocator
 
     positive = np.concatenate([e[np.isfinite(e) & (e > 0.0)] for e in errors])
     speed.set_yscale("log", subs=())

@@ -51,7 +51,7 @@ def sheet(
     tuple
         The figure and its axes, row by row.
     """
-    from matplotlib.figure import Figure  # noqa: PLC0415 (matplotlib takes its time)
+    from matplotlib.figure import Figure
 
     width, height = size
     figure = Figure(figsize=size, dpi=DPI, facecolor="white")

@@ -62,9 +62,9 @@ def _total_channel(flight: "Flight") -> tuple[float, float, float, float]:
     A random-walk filter of steady gain K leaves sqrt(K / (2 - K)) of white noise and follows a ramp with an error of
     slope * interval * (1 - K) / K.
     """
-    from uavsim.cosim import believed_noise  # noqa: PLC0415
-    from uavsim.onboard.airspeed import steady_gain  # noqa: PLC0415
-    from uavsim.scenario import Scenario  # noqa: PLC0415
+    from uavsim.cosim import believed_noise
+    from uavsim.onboard.airspeed import steady_gain
+    from uavsim.scenario import Scenario
 
     scenario = Scenario.from_dict(flight.scenario)
     noise = believed_noise(scenario).total_sd

@@ -218,7 +218,7 @@ def print_batch(flown: "Batch") -> None:
 
 
 def _quantile_table(flown: "Batch") -> Table:
-    from uavsim.studies.quantiles import quantile_band  # noqa: PLC0415
+    from uavsim.studies.quantiles import quantile_band
 
     table = _table(("Quantiles and 95 % bands", "least", *QUANTILES, "greatest"))
     for label, key, factor, digits in (
@@ -253,7 +253,7 @@ def _with_band(quantile: "QuantileBand", digits: int) -> str:
 
 def print_presets() -> None:
     """List the sensor presets, a line each."""
-    from sensors import presets  # noqa: PLC0415
+    from sensors import presets
 
     for name in presets():
         sheet = _datasheet(name)
@@ -268,7 +268,7 @@ def print_preset(name: str) -> None:
     ValueError
         If there is no such preset.
     """
-    from sensors import preset  # noqa: PLC0415
+    from sensors import preset
 
     preset(name)
     sheet, console = _datasheet(name), _console()
@@ -313,7 +313,7 @@ def _words(key: str) -> str:
 
 
 def _datasheet(name: str) -> dict[str, Any]:
-    from sensors.catalogue import FOLDER  # noqa: PLC0415
+    from sensors.catalogue import FOLDER
 
     return tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
 

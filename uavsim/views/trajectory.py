@@ -40,7 +40,7 @@ SHAPES = {"detected": "x", "rail exit": "s", "wing out": "D", "motor on": "o"}
 
 def draw(record: Record) -> "Figure | None":
     """Way through the air, attitude, throttle and wing."""
-    if not record.has("truth"):
+    if not record.has("truth") or not _flew(record):
         return None
     stretches = record.with_enlarged(record.opening)
     if record.span[1] - stretches[-1][1] < LEAST_SAVED:
@@ -58,6 +58,11 @@ def draw(record: Record) -> "Figure | None":
         label(row[0], name)
         legend(row[-1], row[0])
     return figure
+
+
+def _flew(record: Record) -> bool:
+    """Whether there is a way to draw; a flight can diverge before its first row."""
+    return bool(np.isfinite(record.flight.truth["altitude"].to_numpy()).sum() > 1)
 
 
 def _arrange(column: "Sequence[Axes]") -> None:
@@ -108,10 +113,12 @@ def _shapes(record: Record) -> Iterator[tuple[Mark, str]]:
 
 def _scale(axes: "Axes", distance: Array, height: Array) -> None:
     """Set limits that exaggerate the height by a round factor, and say which."""
+    seen = np.isfinite(distance) & np.isfinite(height)
+    distance, height = distance[seen], height[seen]
     width, tall = inches(axes)
     shape = tall / width
-    first, last = float(np.nanmin(distance)), float(np.nanmax(distance))
-    low, high = min(0.0, float(np.nanmin(height))), max(1.0, float(np.nanmax(height)))
+    first, last = float(distance.min()), float(distance.max())
+    low, high = min(0.0, float(height.min())), max(1.0, float(height.max()))
     margin = 0.08 * (high - low)
     needed = (high - low) + 2.0 * margin
     across = max(1.06 * (last - first), needed / shape)
