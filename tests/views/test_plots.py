@@ -326,4 +326,4 @@ def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_p
     heavy = "aircraft.properties.inertia/pointmass-weight-lbs=1e6"
     flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", heavy])
     assert flight.score["outcome"] == "diverged"
-    assert save_plots(flight, tmp_path) == []
+    assert plots.save_plots(flight, tmp_path) == []
