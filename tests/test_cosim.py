@@ -21,7 +21,7 @@ from sensors import Streams, Vibration
 from uavsim import cosim
 from uavsim.cosim import CHUNK, Cosimulation, Onboard, draw, plant_settings, replay
 from uavsim.flight import UNITS, Flight
-from uavsim.plants import jsbsim
+from uavsim.plants import columns, jsbsim
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.truth import FELT, STANDARD_GRAVITY
@@ -238,7 +238,7 @@ def test_onboard_is_made_of_the_scenario() -> None:
 # -- poison ----------------------------------------------------------------------------------------------------------
 
 READ_BY_THE_HEAD = ("mach", "p_static", "temperature")
-RAW = {name: i for i, name in enumerate(jsbsim._RAW)}
+RAW = {name: i for i, name in enumerate(columns.RAW)}
 
 
 class Poisoned(JsbsimPlant):
@@ -250,14 +250,14 @@ class Poisoned(JsbsimPlant):
         super().__init__(plant_settings(scenario, draw(scenario)))
         self._own = self.row
         self._columns = [i for name, i in RAW.items() if name not in self.spared]
-        self._columns += range(len(RAW), len(RAW) + len(jsbsim._OWN))
+        self._columns += range(len(RAW), len(RAW) + len(columns.OWN))
 
     def step(self) -> None:
         self.row = self._own
         super().step()
         self._own = self.row
         self.row = tuple(v if n in self.spared else math.nan for n, v in zip(RAW, self._own, strict=True))
-        last = np.frombuffer(self._buffer, count=jsbsim._ROW.size // 8, offset=self._size - jsbsim._ROW.size)
+        last = np.frombuffer(self._buffer, count=columns.ROW.size // 8, offset=self._size - columns.ROW.size)
         last[self._columns] = math.nan
 
     @property

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from uavsim.plants.jsbsim import FT, INCH, SLUG, SLUG_FT2, JsbsimPlant, JsbsimSettings
+from uavsim.plants.columns import FT, INCH, INDEX, SLUG, SLUG_FT2
+from uavsim.plants.jsbsim import JsbsimPlant, JsbsimSettings
 from uavsim.plants.rail import CONTACT_FREQUENCY, DAMPING_RATIO, body_axes
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.truth import STANDARD_GRAVITY
@@ -229,7 +230,7 @@ def test_turbulence_follows_its_seed() -> None:
 
 
 def test_mass_is_what_the_aircraft_weighs(catapult: JsbsimPlant) -> None:
-    assert catapult.row[7] * SLUG == pytest.approx(8.0, abs=0.3)
+    assert catapult.row[INDEX["mass"]] * SLUG == pytest.approx(8.0, abs=0.3)
 
 
 def test_a_flight_that_diverges_beyond_sound_still_gives_its_record() -> None:

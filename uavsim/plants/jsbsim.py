@@ -1,6 +1,6 @@
 """JSBSim as a plant: an aircraft on a rail, then in the air, one row of truth a step.
 
-The only module that imports jsbsim, and the only one that knows pounds, feet and slugs. Facts it rests on:
+The only module that imports jsbsim. Facts it rests on:
 
 * In one `run()` JSBSim propagates the state first and evaluates forces with it last, so position, velocity, forces and
   angular acceleration read after a step all belong to its end. The non-gravitational force over mass is then the
@@ -12,12 +12,10 @@ The only module that imports jsbsim, and the only one that knows pounds, feet an
 * Writing a property that does not exist would silently create it, so every name is checked against the catalogue.
 """
 
-import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from math import isfinite, pi, radians
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -25,68 +23,34 @@ from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
 from numpy.typing import NDArray
 
 from uavsim import airdata
+from uavsim.plants.columns import (
+    AIR,
+    AIR_OFFSET,
+    ALTITUDE,
+    ATTITUDE,
+    CENTRE,
+    FELT,
+    FT,
+    INCH,
+    INDEX,
+    LBF,
+    MOTION,
+    OWN,
+    PSF,
+    RANKINE,
+    RATES,
+    RAW,
+    ROW,
+    SLUG,
+    SLUG_FT2,
+    WING,
+)
 from uavsim.plants.hangar import find_aircraft
 from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 
-FT = 0.3048  # m, exact
-INCH = 0.0254  # m, exact
-LBF = 4.4482216152605  # N, exact
-SLUG = LBF / FT  # kg
-SLUG_FT2 = SLUG * FT**2  # kg m^2
-PSF = LBF / FT**2  # Pa
-RANKINE = 5.0 / 9.0  # K
-
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
 WING_OUT = 0.99
-
-_RAW = {
-    "airspeed": ("velocities/vtrue-fps", FT),
-    "mach": ("velocities/mach", 1.0),
-    "p_static": ("atmosphere/P-psf", PSF),
-    "temperature": ("atmosphere/T-R", RANKINE),
-    "force_x": ("forces/fbx-total-lbs", LBF),
-    "force_y": ("forces/fby-total-lbs", LBF),
-    "force_z": ("forces/fbz-total-lbs", LBF),
-    "mass": ("inertia/mass-slugs", SLUG),
-    "cg_x": ("inertia/cg-x-in", INCH),
-    "cg_y": ("inertia/cg-y-in", INCH),
-    "cg_z": ("inertia/cg-z-in", INCH),
-    "p": ("velocities/p-rad_sec", 1.0),
-    "q": ("velocities/q-rad_sec", 1.0),
-    "r": ("velocities/r-rad_sec", 1.0),
-    "p_dot": ("accelerations/pdot-rad_sec2", 1.0),
-    "q_dot": ("accelerations/qdot-rad_sec2", 1.0),
-    "r_dot": ("accelerations/rdot-rad_sec2", 1.0),
-    "north": ("position/from-start-neu-n-ft", FT),
-    "east": ("position/from-start-neu-e-ft", FT),
-    "altitude": ("position/h-sl-ft", FT),
-    "vn": ("velocities/v-north-fps", FT),
-    "ve": ("velocities/v-east-fps", FT),
-    "vd": ("velocities/v-down-fps", FT),
-    "wind_n": ("atmosphere/total-wind-north-fps", FT),
-    "wind_e": ("atmosphere/total-wind-east-fps", FT),
-    "wind_d": ("atmosphere/total-wind-down-fps", FT),
-    "roll": ("attitude/phi-rad", 1.0),
-    "pitch": ("attitude/theta-rad", 1.0),
-    "heading": ("attitude/psi-rad", 1.0),
-    "alpha": ("aero/alpha-rad", 1.0),
-    "beta": ("aero/beta-rad", 1.0),
-    "wing": ("fcs/wing-pos-norm", 1.0),
-    "throttle": ("fcs/throttle-pos-norm", 1.0),
-}
-"""What is read each step: the column, its JSBSim property, and the factor to SI."""
-
-_INDEX = {name: i for i, name in enumerate(_RAW)}
-_ALTITUDE, _WING = _INDEX["altitude"], _INDEX["wing"]
-_AIR, _AIR_OFFSET = struct.Struct("3d"), 8 * _INDEX["mach"]  # mach, p_static, temperature stand together in _RAW
-_MOTION = itemgetter(*(_INDEX[n] for n in ("north", "east", "altitude", "vn", "ve", "vd")))
-_ATTITUDE = itemgetter(*(_INDEX[n] for n in ("roll", "pitch", "heading")))
-_RATES = itemgetter(*(_INDEX[n] for n in ("p", "q", "r")))
-_CG = itemgetter(*(_INDEX[n] for n in ("cg_x", "cg_y", "cg_z")))
-_FELT = slice(_INDEX["force_x"], _INDEX["r_dot"] + 1)  # what the specific force is made of stands together in _RAW
-_OWN = ("catapult_force", "fx", "fy", "fz")  # N and m/s^2: what is recorded beside them, in SI already
-_ROW = struct.Struct(f"{len(_RAW) + len(_OWN)}d")
 
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
 Commands = tuple[float, float, float, float, float]
@@ -151,7 +115,7 @@ class JsbsimPlant:
         self._catalogue = _read_catalogue(self._fdm)
         self._place()
         self._run: Callable[[], bool] = self._fdm.run
-        self._nodes = [self._node(name) for name, _ in _RAW.values()]
+        self._nodes = [self._node(name) for name, _ in RAW.values()]
         self._commands = [self._node(name) for name in _COMMANDS]
         self._eye = tuple(self._value(f"metrics/eyepoint-{axis}-in") for axis in "xyz")
         self._forces = [
@@ -178,7 +142,7 @@ class JsbsimPlant:
         self._datum = self.row
         self.aloft = True
         self._settle()
-        self._buffer = bytearray((round(settings.duration * settings.step_rate) + 2) * _ROW.size)
+        self._buffer = bytearray((round(settings.duration * settings.step_rate) + 2) * ROW.size)
         self._size = 0
         self._ground = settings.environment.ground_elevation / FT
         self._offsets = (self._lever(self.row),) * 3  # of the sensor from the centre of gravity, newest first
@@ -265,7 +229,7 @@ class JsbsimPlant:
         front, rear = self._shoe_offsets(self.row)
         return Rail(
             s.launcher,
-            mass=self.row[_INDEX["mass"]] * SLUG,
+            mass=self.row[INDEX["mass"]] * SLUG,
             roll_inertia=self._value("inertia/ixx-slugs_ft2") * SLUG_FT2,
             gravity=self._value("accelerations/gravity-ft_sec2") * FT,
             front=front,
@@ -297,7 +261,7 @@ class JsbsimPlant:
         self.t = self.k / self.settings.step_rate
         self.row = row = self._read()
         self._record(row)
-        self.aloft = row[_ALTITUDE] > self._ground  # false too for NaN
+        self.aloft = row[ALTITUDE] > self._ground  # false too for NaN
 
     def step_unrecorded(self) -> None:
         """Advance by one step of bare JSBSim: the measure that recording is compared with."""
@@ -313,8 +277,8 @@ class JsbsimPlant:
 
     def _record(self, row: Row) -> None:
         self.force = self._felt(row)
-        _ROW.pack_into(self._buffer, self._size, *row, self.rail.push, *self.force)
-        self._size += _ROW.size
+        ROW.pack_into(self._buffer, self._size, *row, self.rail.push, *self.force)
+        self._size += ROW.size
 
     def _attend(self) -> None:
         """Look after what is not always there: the rail, and a gust that waits for the wing."""
@@ -326,13 +290,13 @@ class JsbsimPlant:
 
     def _hold(self, time: float) -> None:
         row = self.row
-        north, east, altitude, vn, ve, vd = _MOTION(row)
-        north0, east0, altitude0, *_ = _MOTION(self._datum)
+        north, east, altitude, vn, ve, vd = MOTION(row)
+        north0, east0, altitude0, *_ = MOTION(self._datum)
         motion = Motion(
             ((north - north0) * FT, (east - east0) * FT, (altitude0 - altitude) * FT),
             (vn * FT, ve * FT, vd * FT),
-            _ATTITUDE(row),
-            _RATES(row),
+            ATTITUDE(row),
+            RATES(row),
         )
         forces = self.rail.forces(time, motion, self._shoe_offsets(row))
         self.on_rail = self.rail.active
@@ -345,7 +309,7 @@ class JsbsimPlant:
 
     def _shoe_offsets(self, row: Row) -> tuple[Vector, Vector]:
         """Both shoes relative to the centre of gravity, body axes, m (structural x is aft, z is up)."""
-        x, y, z = _CG(row)
+        x, y, z = CENTRE(row)
         front, rear = self._shoes
         return (
             ((x - front[0]) * INCH, (front[1] - y) * INCH, (z - front[2]) * INCH),
@@ -355,7 +319,7 @@ class JsbsimPlant:
     def _watch_for_gust(self) -> None:
         air = self.settings.environment
         if self._gust_time is None:
-            if self.row[_WING] >= WING_OUT:
+            if self.row[WING] >= WING_OUT:
                 self._gust_time = self.t + air.gust_delay
         elif self.t >= self._gust_time:
             towards = radians(self.settings.launcher.heading_deg) + pi
@@ -373,13 +337,13 @@ class JsbsimPlant:
     # -- what sensors read -------------------------------------------------------------------------------------------
 
     def _lever(self, row: Row) -> Vector:
-        x, y, z = _CG(row)
+        x, y, z = CENTRE(row)
         eye = self._eye
         return ((x - eye[0]) * INCH, (eye[1] - y) * INCH, (z - eye[2]) * INCH)
 
     def _felt(self, row: Row) -> Vector:
         """Specific force at the accelerometer, body axes, m/s^2."""
-        fx, fy, fz, mass, cx, cy, cz, p, q, r, p_dot, q_dot, r_dot = row[_FELT]
+        fx, fy, fz, mass, cx, cy, cz, p, q, r, p_dot, q_dot, r_dot = row[FELT]
         eye = self._eye
         x, y, z = (cx - eye[0]) * INCH, (eye[1] - cy) * INCH, (cz - eye[2]) * INCH
         scale = FT / mass
@@ -414,9 +378,9 @@ class JsbsimPlant:
         """Total pressure, static pressure, Pa, and temperature, K, at any recorded `time`, linear within a step."""
         k = min(int(time * self.settings.step_rate), self.k - 1)
         share = time * self.settings.step_rate - k
-        at = k * _ROW.size + _AIR_OFFSET
-        mach0, static0, temperature0 = _AIR.unpack_from(self._buffer, at)
-        mach, static, temperature = _AIR.unpack_from(self._buffer, at + _ROW.size)
+        at = k * ROW.size + AIR_OFFSET
+        mach0, static0, temperature0 = AIR.unpack_from(self._buffer, at)
+        mach, static, temperature = AIR.unpack_from(self._buffer, at + ROW.size)
         static = (static0 + share * (static - static0)) * PSF
         total = airdata.isentropic_total(static, mach0 + share * (mach - mach0))
         return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
@@ -430,19 +394,19 @@ class JsbsimPlant:
 
     def truth(self) -> dict[str, Array]:
         """Columns of the truth (`uavsim.truth.UNITS`), SI, one value a step."""
-        table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(_RAW) + len(_OWN))
-        raw = {name: table[:, i] * factor for i, (name, (_, factor)) in enumerate(_RAW.items())}
+        table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(RAW) + len(OWN))
+        raw = {name: table[:, i] * factor for i, (name, (_, factor)) in enumerate(RAW.items())}
         raw["t"] = np.arange(len(table)) / self.settings.step_rate
-        raw |= {name: table[:, len(_RAW) + i] for i, name in enumerate(_OWN)}
-        raw["north"] = raw["north"] - self._datum[_INDEX["north"]] * FT
-        raw["east"] = raw["east"] - self._datum[_INDEX["east"]] * FT
+        raw |= {name: table[:, len(RAW) + i] for i, name in enumerate(OWN)}
+        raw["north"] = raw["north"] - self._datum[INDEX["north"]] * FT
+        raw["east"] = raw["east"] - self._datum[INDEX["east"]] * FT
         raw["rail_s"] = self._travel(raw)
         raw["p_total"] = airdata.isentropic_total(raw["p_static"], raw["mach"], np)  # unchecked: it may have diverged
         return raw
 
     def _travel(self, c: dict[str, Array]) -> Array:
         """Way along the rail, m, kept once the last shoe has left."""
-        rise = c["altitude"] - self._datum[_ALTITUDE] * FT
+        rise = c["altitude"] - self._datum[ALTITUDE] * FT
         along = self.rail.along
         travel: Array = along[0] * c["north"] + along[1] * c["east"] - along[2] * rise
         left = np.flatnonzero(travel >= self.settings.launcher.stroke)
