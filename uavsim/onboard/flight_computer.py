@@ -157,7 +157,8 @@ class FlightComputer:
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
         self._block_start: float | None = None
         self._block_sum, self._block_count = 0.0, 0
-        self._rail_means = (0.0, 0.0)
+        self._last_block: float | None = None
+        self._rail_mean = 0.0
         self._last = 0.0
         self._speed_gain = 0.0
         self._quiet_since: float | None = None
@@ -203,8 +204,8 @@ class FlightComputer:
             self._block_start = t
         elif t - self._block_start >= RAIL_BLOCK and self._block_count:
             mean = self._block_sum / self._block_count
-            older = self._rail_means[1] if self._rail_means != (0.0, 0.0) else mean
-            self._rail_means = (older, mean)
+            self._rail_mean = mean if self._last_block is None else self._last_block
+            self._last_block = mean
             self._block_start, self._block_sum, self._block_count = t, 0.0, 0
         self._block_sum += fx
         self._block_count += 1
@@ -220,7 +221,7 @@ class FlightComputer:
     def _follow_stroke(self, t: float, fx: float) -> None:
         if isnan(fx) or not t > self._last:  # a late reading, or one without a time, counts no time
             return
-        self._speed_gain += (fx - self._rail_means[0]) * min(t - self._last, LONGEST_STEP)
+        self._speed_gain += (fx - self._rail_mean) * min(t - self._last, LONGEST_STEP)
         self._last = t
         recent = self._recent
         recent.append(fx)
