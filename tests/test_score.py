@@ -520,3 +520,13 @@ def test_what_does_not_exist_is_null_and_not_zero() -> None:
     assert result["pressure"]["total"]["rmse"] is None
     assert airspeed["samples"] == 0
     assert launch["false_detections"] == 0
+
+
+def test_what_the_cover_left_in_sensor_and_filter_is_no_error_of_the_total_pressure() -> None:
+    """For 40 ms after the cover a reading still shows the covered port, 30 Pa below the wind: the bias stays."""
+    flight = pressed("covered", tare_taken=50.0, wind=30.0)
+    estimate, lingering = flight.tables["estimate"], flight.estimate("t")
+    just_uncovered = (lingering > RELEASE - 0.5) & (lingering < RELEASE - 0.46)
+    assert just_uncovered.sum() >= 3
+    estimate["p_total"] = np.where(just_uncovered, flight.estimate("p_total") - 30.0, flight.estimate("p_total"))
+    assert score(flight)["pressure"]["total"]["bias"] == pytest.approx(70.0, abs=0.05)

@@ -55,7 +55,7 @@ class Scenario:
     name, description
         For people.
     duration
-        Of the record, s; the wait on the rail is part of it.
+        Of the record, s; longer than the wait on the rail, which is part of it.
     seed
         Of everything that is drawn.
     expect

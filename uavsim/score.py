@@ -29,6 +29,7 @@ CROSSING = 4.5 * STANDARD_GRAVITY  # m/s^2, lower edge of the paper's recognitio
 STROKE_LEAD = 0.05  # s after the true launch at which scoring begins
 MISSED_AFTER = 0.5  # s after the last shoe has left, until which a launch may be recognised
 WING_OUT = 0.99
+SETTLED = 0.05  # s after the tare in which the last covered conversion leaves the sensor and the filter
 TRANSITION = 2.0  # s after the wing is out
 TRANSITION_FOLDED = 4.0  # s after the rail if the wing never comes out
 LAST = 5.0  # s at the end over which cruise is judged
@@ -261,8 +262,8 @@ def _pressure(flight: Judged, channel: str) -> dict[str, Any]:
     air = flight.scenario["air_data"]
     exist = np.isfinite(error) & np.isfinite(raw)
     before, rows = exist & (time < flight.release_time), exist & flight.rows(time)
-    if air["tare"] != "none":  # compare with the free stream, and with the tare taken off, only from the cover's end on
-        before &= time > flight.release_time - air["cover_off"]
+    if channel == "total" and air["tare"] != "none":  # before, it is not tared, and a cover keeps the free stream out
+        before &= time > flight.release_time - air["cover_off"] + SETTLED
     if not before.any():
         return dict.fromkeys(("rmse", "rmse_raw", "reduction_percent", "bias"))
     bias = error[before].mean()

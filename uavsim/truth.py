@@ -26,7 +26,7 @@ UNITS: dict[str, str] = {
     "wind_d": "m/s",
     "roll": "rad",
     "pitch": "rad",
-    "heading": "rad",
+    "heading": "rad",  # continuous: it does not jump where a compass goes from 360° to 0
     "p": "rad/s",
     "q": "rad/s",
     "r": "rad/s",

@@ -353,3 +353,18 @@ def test_settings_tell_their_defaults_once():
     force = ring_curve(200)
     scaled = [80.0 * f for f in force]
     assert recognised(launch.default(), scaled) == recognised(launch.build(DetectorSettings(), 1000.0), scaled) != []
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ({"samples": 1.5}, "whole numbers"),
+        ({"levels": 2.5}, "whole numbers"),
+        ({"threshold": math.nan}, "finite"),
+        ({"trigger": math.inf}, "finite"),
+    ],
+)
+def test_settings_that_are_no_counts_or_no_numbers_are_refused(wrong, says):
+    right = {"trigger": 45.0, "threshold": 45.0, "samples": 10, "levels": 4, "ratio": 0.8}
+    with pytest.raises(ValueError, match=says):
+        launch.MultiLevelWindow(**{**right, **wrong})

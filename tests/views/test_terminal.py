@@ -252,3 +252,9 @@ def test_a_line_is_printed_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
     line = "written to [red]output[/red]/" + "x" * 300 + " 123"
     terminal.say(line)
     assert capsys.readouterr().out == line + "\n"
+
+
+def test_an_unmet_requirement_stands_in_the_headline(catapult: Flight, capsys: pytest.CaptureFixture[str]) -> None:
+    unmet = {"key": "airspeed.rmse", "minimum": None, "maximum": 1e-6, "value": 0.1, "met": False}
+    terminal.print_score(Flight(catapult.scenario, catapult.tables, [], {**catapult.score, "requirements": [unmet]}))
+    assert "cruise (as expected; a requirement is not met)" in capsys.readouterr().out

@@ -16,7 +16,7 @@ unless others follow; a launch must stay above G2 for longer than that.
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf
+from math import inf, isfinite
 from typing import Annotated, Literal, get_args
 
 from annotated_types import Gt, Interval, MinLen
@@ -102,7 +102,9 @@ class MultiLevelWindow:
         rearm: bool = True,
         max_gap: float | None = None,
     ) -> None:
+        _require(isfinite(threshold) and isfinite(trigger), "trigger and threshold must be finite")
         _require(trigger >= threshold, "trigger must not be below threshold")
+        _require(samples == int(samples) and levels == int(levels), "samples and levels must be whole numbers")
         _require(samples >= 1 and levels >= 1, "samples and levels must be at least 1")
         _require(0.0 < ratio <= 1.0, "ratio must be above 0 and at most 1")
         _require(max_gap is None or max_gap > 0.0, "max_gap must be above 0")

@@ -401,6 +401,7 @@ class JsbsimPlant:
         raw["north"] = raw["north"] - self._datum[INDEX["north"]] * FT
         raw["east"] = raw["east"] - self._datum[INDEX["east"]] * FT
         raw["rail_s"] = self._travel(raw)
+        raw["heading"] = _continuous(raw["heading"])
         raw["p_total"] = airdata.isentropic_total(raw["p_static"], raw["mach"], np)  # unchecked: it may have diverged
         return raw
 
@@ -413,6 +414,13 @@ class JsbsimPlant:
         if left.size:
             travel[left[0] :] = travel[left[0]]
         return travel
+
+
+def _continuous(angle: Array) -> Array:
+    """Return an angle that JSBSim wraps at 0 and 2 pi without its jumps, first within ±pi of 0, rad."""
+    continuous: Array = np.unwrap(angle)
+    continuous -= 2.0 * pi * np.round(continuous[0] / (2.0 * pi))
+    return continuous
 
 
 def _derivatives(now: float, before: float, two_before: float, three_before: float, dt: float) -> tuple[float, float]:

@@ -116,6 +116,8 @@ def print_score(flight: "Flight") -> None:
     score, console = flight.score, _console()
     right = score["outcome"] == score["expected"]
     verdict = "as expected" if right else f"expected: {score['expected']}"
+    if not all(r["met"] for r in score["requirements"]):
+        verdict += "; a requirement is not met"
     outcome = f"[bold {'green' if right else 'red'}]{score['outcome']}[/]"
     head = f"\n[bold]{escape(flight.scenario['name'])}[/bold], seed {score['seed']}: {outcome} ({verdict})\n"
     _print(console, head, _launch_table(score), "", _airspeed_table(score["airspeed"]), "")
