@@ -290,7 +290,10 @@ def _outcomes(flown: Batch) -> "Figure":
         ("coverage_95", "share within ±1.96 sd", 0.95),
     )
     expected = flown.scenario.expect
-    words = f"expected: {expected}; a point is a flight; cross: median and its 95 % band; red: the scenario's bounds"
+    drawn = {column for key, _, _ in strips for _, column, _ in _samples(flown, key)}
+    words = f"expected: {expected}; a point is a flight; cross: median and its 95 % band"
+    if drawn & {r.key for r in flown.scenario.requirements}:
+        words += "; red: the scenario's bounds"
     figure, axes = sheet(
         _title(flown), words, (1.0,), (0.8, 1.2, 1.2), size=(11.5, 4.6), right=0.3, share=False, gap=(0.1, 0.32)
     )
