@@ -37,11 +37,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sensors.accelerometer import Accelerometer
+    from sensors.accelerometer_description import AccelerometerDescription, AccelerometerErrors
     from sensors.bench import record_at_rest
     from sensors.catalogue import preset, presets
-    from sensors.description import AccelerometerDescription, PressureDescription, PressureMode
     from sensors.head import AirDataHead, head_noise
     from sensors.pressure import PressureSensor
+    from sensors.pressure_description import PressureDescription, PressureErrors, PressureMode
     from sensors.settings import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
     from sensors.streams import Streams
     from sensors.vibration import Vibration
@@ -49,10 +50,12 @@ if TYPE_CHECKING:
 __all__ = [
     "Accelerometer",
     "AccelerometerDescription",
+    "AccelerometerErrors",
     "AccelerometerSettings",
     "AirDataHead",
     "AirDataSettings",
     "PressureDescription",
+    "PressureErrors",
     "PressureMode",
     "PressureSensor",
     "PressureSettings",
@@ -67,12 +70,14 @@ __all__ = [
 
 _HOME = {
     "Accelerometer": "accelerometer",
-    "AccelerometerDescription": "description",
+    "AccelerometerDescription": "accelerometer_description",
+    "AccelerometerErrors": "accelerometer_description",
     "AccelerometerSettings": "settings",
     "AirDataHead": "head",
     "AirDataSettings": "settings",
-    "PressureDescription": "description",
-    "PressureMode": "description",
+    "PressureDescription": "pressure_description",
+    "PressureErrors": "pressure_description",
+    "PressureMode": "pressure_description",
     "PressureSensor": "pressure",
     "PressureSettings": "settings",
     "Streams": "streams",

@@ -19,10 +19,11 @@ in the local variables of a coroutine (attributes would cost twice as much).
 from collections.abc import Callable, Generator
 from math import expm1, pi
 
+from sensors.accelerometer_description import AccelerometerDescription
 from sensors.clock import Clock
-from sensors.description import ROUND, AccelerometerDescription, Triple, Unit, draw_error
 from sensors.noise import constant, gauss_markov, random_walk, rows, white
 from sensors.streams import Streams
+from sensors.unit import ROUND, Triple, Unit, draw_error
 from sensors.vibration import Vibration
 
 Reading = tuple[float, float, float, float]

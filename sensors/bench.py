@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sensors.accelerometer import Accelerometer
+from sensors.accelerometer_description import AccelerometerDescription
 from sensors.catalogue import preset
 from sensors.choice import choose
-from sensors.description import G0, AccelerometerDescription, PressureDescription, Unit
 from sensors.pressure import PressureSensor
+from sensors.pressure_description import PressureDescription
 from sensors.streams import Streams
+from sensors.unit import G0, Unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

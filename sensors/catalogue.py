@@ -9,8 +9,10 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from sensors.accelerometer_description import AccelerometerDescription
 from sensors.choice import choose
-from sensors.description import G0, AccelerometerDescription, PressureDescription, PressureMode, Triple
+from sensors.pressure_description import PressureDescription, PressureMode
+from sensors.unit import G0, Triple
 
 Description = AccelerometerDescription | PressureDescription
 
@@ -22,13 +24,18 @@ MG = 1e-3 * G0  # mg, m/s²
 TOP_KEYS = ("kind", "part", "document", "values", "modes", "sources")
 KINDS = ("accelerometer", "pressure")
 ACCELEROMETER_KEYS = (
-    "ranges_g", "default_range_g", "rates", "default_rate", "bits", "noise_density_ug", "noise_rate_floor",
-    "offset_mg", "offset_limit_mg", "scale_percent", "scale_limit_percent",
-    "drift_ug", "correlation_time", "random_walk_ug",
+    "ranges_g", "default_range_g", "rates", "default_rate", "bits",
+    "filters", "default_filter", "bandwidth_hz", "poles",
+    "noise_density_ug", "noise_rate_floor",
+    "offset_mg", "offset_limit_mg", "offset_tc_mg", "offset_tc_limit_mg",
+    "scale_percent", "scale_limit_percent", "scale_tc_percent", "scale_tc_limit_percent",
+    "cross_axis_percent", "cross_axis_limit_percent", "nonlinearity_percent", "rectification_ug",
+    "drift_ug", "correlation_time", "random_walk_ug", "rate_percent", "rate_limit_percent",
 )  # fmt: skip
 PRESSURE_KEYS = (
     "default_mode", "range_pa", "iir_coefficients", "iir_weights", "reference_pressure_pa",
-    "offset_pa", "offset_limit_pa", "scale", "scale_limit", "rate_percent", "rate_limit_percent",
+    "offset_pa", "offset_limit_pa", "offset_tc_pa", "offset_tc_limit_pa", "solder_pa",
+    "acceleration_pa", "acceleration_limit_pa", "scale", "scale_limit", "rate_percent", "rate_limit_percent",
     "drift_pa", "correlation_time", "random_walk_pa",
     "temperature_offset_k", "temperature_offset_limit_k", "temperature_resolution_k",
 )  # fmt: skip
@@ -127,23 +134,36 @@ def _accelerometer(name: str, document: str, sheet: dict[str, Any]) -> Accelerom
         rates=tuple(float(value) for value in v["rates"]),
         range_g=float(v["default_range_g"]),
         rate=float(v["default_rate"]),
+        filters=tuple(v["filters"]),
+        filter=v["default_filter"],
+        bandwidths=tuple(tuple(float(width) for width in row) for row in v["bandwidth_hz"]),
+        poles=v["poles"],
         bits=tuple(v["bits"]),
         noise_densities=tuple(_triple(row, UG) for row in v["noise_density_ug"]),
         noise_rate_floor=float(v["noise_rate_floor"]),
         bias_sd=_triple(v["offset_mg"], MG),
         bias_limit=_triple(v["offset_limit_mg"], MG),
+        bias_tc_sd=_triple(v["offset_tc_mg"], MG),
+        bias_tc_limit=_triple(v["offset_tc_limit_mg"], MG),
         scale_sd=v["scale_percent"] / 100,
         scale_limit=v["scale_limit_percent"] / 100,
+        scale_tc_sd=v["scale_tc_percent"] / 100,
+        scale_tc_limit=v["scale_tc_limit_percent"] / 100,
+        cross_axis_sd=v["cross_axis_percent"] / 100,
+        cross_axis_limit=v["cross_axis_limit_percent"] / 100,
+        nonlinearity_sd=v["nonlinearity_percent"] / 100,
+        rectification_sd=v["rectification_ug"] * UG / G0**2,
         drift_sd=v["drift_ug"] * UG,
         correlation_time=float(v["correlation_time"]),
         random_walk=v["random_walk_ug"] * UG,
-    ).select(range_g=v["default_range_g"], rate=v["default_rate"])
+        rate_sd=v["rate_percent"] / 100,
+        rate_limit=v["rate_limit_percent"] / 100,
+    ).select(range_g=v["default_range_g"], rate=v["default_rate"], filter=v["default_filter"])
 
 
 def _pressure(name: str, document: str, sheet: dict[str, Any]) -> PressureDescription:
     v = sheet["values"]
     modes = tuple(_mode(mode) for mode in sheet["modes"])
-    low, high = v["range_pa"]
     return PressureDescription(
         name=name,
         document=document,
@@ -151,10 +171,15 @@ def _pressure(name: str, document: str, sheet: dict[str, Any]) -> PressureDescri
         mode=modes[0],
         iir_weights=tuple(zip(v["iir_coefficients"], map(float, v["iir_weights"]), strict=True)),
         iir=0,
-        range=(float(low), float(high)),
+        range=_pair(v["range_pa"]),
         reference_pressure=float(v["reference_pressure_pa"]),
         offset_sd=float(v["offset_pa"]),
         offset_limit=float(v["offset_limit_pa"]),
+        offset_tc_sd=v["offset_tc_pa"],
+        offset_tc_limit=v["offset_tc_limit_pa"],
+        solder=_pair(v["solder_pa"]),
+        acceleration_sd=v["acceleration_pa"],
+        acceleration_limit=v["acceleration_limit_pa"],
         scale_sd=v["scale"],
         scale_limit=v["scale_limit"],
         rate_sd=v["rate_percent"] / 100,
@@ -182,6 +207,11 @@ def _mode(mode: dict[str, Any]) -> PressureMode:
 def _triple(values: list[float], unit: float) -> Triple:
     x, y, z = values
     return x * unit, y * unit, z * unit
+
+
+def _pair(values: list[float]) -> tuple[float, float]:
+    low, high = values
+    return float(low), float(high)
 
 
 def _of_kind(kind: str) -> str:

@@ -14,10 +14,10 @@ from collections.abc import Callable
 from math import inf
 
 from sensors.clock import Clock
-from sensors.description import Unit
 from sensors.pressure import PressureSensor
 from sensors.settings import AirDataSettings
 from sensors.streams import Streams
+from sensors.unit import Unit
 
 Air = tuple[float, float, float]  # true total and static pressure, Pa, and temperature, K
 Row = tuple[float, float, float, float, float, float]

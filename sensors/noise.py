@@ -95,6 +95,21 @@ def values(sources: Iterable[Iterator[Array]]) -> Callable[[], float]:
     return chain.from_iterable(reduce(np.add, block)[:, 0].tolist() for block in blocks).__next__
 
 
+def enbw(bandwidth: float, rate: float, poles: int) -> float:
+    """Return the equivalent noise bandwidth of what `rate` readings a second carry behind a low-pass, Hz.
+
+    Parameters
+    ----------
+    bandwidth : float
+        Its -3 dB frequency, Hz; from rate/2 on it takes nothing away.
+    rate : float
+        Hz.
+    poles : int
+        1 or 2 (Butterworth), discrete at the output rate.
+    """
+    return rate / 2.0
+
+
 def band_limited(generator: np.random.Generator, count: int, dt: float, band: tuple[float, float], axes: int) -> Array:
     """Return noise with a flat spectrum inside a band and nothing outside, of rms exactly 1 on each axis.
 

@@ -18,9 +18,10 @@ from collections.abc import Callable
 from math import nan
 
 from sensors.clock import Clock
-from sensors.description import ROUND, PressureDescription, Unit, draw_error
 from sensors.noise import constant, gauss_markov, random_walk, values, white
+from sensors.pressure_description import PressureDescription
 from sensors.streams import Streams
+from sensors.unit import Unit, draw_error, quantise
 
 Conversion = tuple[float, float, float]  # pressure Pa, temperature K, end of conversion s
 Truth = Callable[[float], tuple[float, float]]  # time s -> pressure at the port Pa, temperature K
@@ -152,8 +153,3 @@ class PressureSensor:
                 pressure, temperature = self._filters[0].step(pressure), self._filters[1].step(temperature)
             self._ready = (pressure, temperature, end)
         return self._ready
-
-
-def quantise(value: float, step: float) -> float:
-    """Return `value` rounded to a multiple of `step`; NaN stays NaN."""
-    return (value / step + ROUND - ROUND) * step

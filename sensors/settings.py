@@ -1,7 +1,7 @@
 """What a scenario may choose about the sensors.
 
-Parts, rates, assumptions about their noise and offsets, vibration, and how the air-data head is tared: plain frozen
-dataclasses with bounds; whoever reads a file checks it against them.
+Parts, rates, assumptions about each of their errors, where they sit, vibration, the ports and tubes before the pressure
+sensors, and what breaks when: plain frozen dataclasses with bounds; whoever reads a file checks it against them.
 """
 
 from dataclasses import dataclass, field
@@ -10,10 +10,56 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Interval
 
 from sensors import catalogue
-from sensors.description import AccelerometerDescription, PressureDescription
+from sensors.accelerometer_description import AccelerometerDescription, AccelerometerErrors
+from sensors.pressure_description import PressureDescription, PressureErrors
+from sensors.unit import Unit
 
 Tare = Literal["covered", "open", "none"]
+Phase = Literal["always", "waiting", "stroke", "flight"]
 Band = Annotated[float, Interval(gt=0.0, lt=500.0)]  # Hz, below half of the plant's 1 kHz
+Angle = Annotated[float, Interval(ge=-360.0, le=360.0)]  # degrees
+Time = Annotated[float, Interval(ge=0.0, le=3600.0)]  # s
+Arm = Annotated[float, Interval(ge=-10.0, le=10.0)]  # m
+Vector = tuple[float, float, float]
+FOREVER = 3600.0  # s, the longest flight
+
+
+@dataclass(frozen=True, slots=True)
+class Tone:
+    """A sinusoidal vibration, of the motor, the carriage or the structure.
+
+    Attributes
+    ----------
+    frequency_hz : float
+        Hz.
+    amplitude_g : (x, y, z)
+        Peak on each body axis, g.
+    phase_deg : float
+        Phase at time 0, degrees; the three axes are in step.
+    when : str
+        In which phase of the flight it is there: "waiting", "stroke", "flight" or "always".
+    """
+
+    frequency_hz: Band
+    amplitude_g: Vector
+    phase_deg: Angle = 0.0
+    when: Phase = "always"
+
+
+@dataclass(frozen=True, slots=True)
+class Spectrum:
+    """A random vibration of a given power spectral density, alike and independent on each axis.
+
+    Attributes
+    ----------
+    psd : list of (frequency, density)
+        One-sided density, g²/Hz, at rising frequencies, Hz; straight lines in log-log between them, nothing outside.
+    when : str
+        In which phase of the flight it is there: "waiting", "stroke", "flight" or "always".
+    """
+
+    psd: tuple[tuple[float, float], ...]
+    when: Phase = "always"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +82,10 @@ class VibrationSettings:
         Amplitude that the ring grows to while the push rises, as a fraction of the push's plateau.
     ring_decay : float
         Time in which it decays to 1/e from there, s.
+    tones : list of groups
+        Sinusoids beside that.
+    spectra : list of groups
+        Random vibration of a given power spectral density beside that.
     """
 
     waiting_rms_g: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.05
@@ -45,6 +95,54 @@ class VibrationSettings:
     ring_hz: Annotated[float, Interval(gt=0.0, le=10000.0)] = 120.0
     ring_fraction: Annotated[float, Interval(ge=0.0, le=5.0)] = 0.3
     ring_decay: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.05
+    tones: tuple[Tone, ...] = ()
+    spectra: tuple[Spectrum, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something that goes wrong with a sensor between two times.
+
+    Attributes
+    ----------
+    kind : str
+        "dropout": no reading comes; "invalid": a reading comes and is NaN; "stuck": the last value before it is
+        repeated; "spike": `size` of either sign is added; "offset": `size` is added.
+    start, stop : float
+        Readings with start ≤ t < stop are concerned, s.
+    probability : float
+        Share of those readings that is hit, each by itself; a stuck value and an offset are there throughout.
+    size : float
+        Of a spike or an offset, in the sensor's unit (m/s², Pa).
+    axis : str
+        Which axis of an accelerometer: "x", "y", "z" or "all"; without meaning for a pressure sensor.
+    """
+
+    kind: Literal["dropout", "invalid", "stuck", "spike", "offset"]
+    start: Time = 0.0
+    stop: Time = FOREVER
+    probability: Annotated[float, Interval(ge=0.0, le=1.0)] = 1.0
+    size: Annotated[float, Interval(ge=-1e6, le=1e6)] = 0.0
+    axis: Literal["x", "y", "z", "all"] = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class ThermalSettings:
+    """How warm a die is: it follows the air with a lag and heats itself.
+
+    Attributes
+    ----------
+    self_heating : float
+        How far it settles above the air, K. No datasheet gives it; a few kelvin are usual on a board.
+    lag : float
+        Time constant, s.
+    powered_for : float
+        How long it has been switched on at time 0, s; before that it had the temperature of the air.
+    """
+
+    self_heating: Annotated[float, Interval(ge=0.0, le=60.0)] = 0.0
+    lag: Annotated[float, Interval(gt=0.0, le=3600.0)] = 30.0
+    powered_for: Annotated[float, Interval(ge=0.0, le=1e6)] = 600.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +157,36 @@ class AccelerometerSettings:
         Range, ±g; None is the part's default.
     rate : float or None
         Output rate, Hz; None is the part's default.
+    filter : str or None
+        The part's low-pass setting, by its name in the preset; None is the part's default.
     noise_scale : float
         Factor on the part's white noise, an assumption about the part: it holds for the unit and for the filter.
     bias : float or (x, y, z)
         Offset beside that of the drawn unit, m/s²; one number is for each axis.
     vibration_scale : float
         Factor on all vibration.
+    unit : str
+        Which unit flies: "random", drawn within the datasheet; "typical", off by one standard deviation; "ideal".
+    errors : group
+        Factors on the datasheet's other errors.
+    mounting_deg : (roll, pitch, yaw)
+        Attitude of the case in the airframe, degrees; known on board, where it is undone.
+    mounting_error_deg : (roll, pitch, yaw)
+        Attitude of the case beside that, degrees; not known on board.
+    position : (x, y, z)
+        Of the sensor from the aircraft's own place for it (its EYEPOINT), body axes, m.
+    rate_error_percent : float
+        Error of the output rate beside that of the drawn unit, %.
+    jitter : float
+        Standard deviation of the sampling instants about the clock's, s; time stamps carry it.
+    delay : float
+        Age of the signal at its time stamp, beside the lag of the low-pass, s.
+    delay_jitter : float
+        Standard deviation of that age from reading to reading, s; time stamps do not carry it.
+    thermal : group
+        Temperature of the die.
+    faults : list of groups
+        What breaks.
     """
 
     preset: str = "lsm6dso32"
@@ -73,11 +195,23 @@ class AccelerometerSettings:
     noise_scale: Annotated[float, Interval(ge=0.0, le=1000.0)] = 1.0
     bias: float | tuple[float, float, float] = 0.0
     vibration_scale: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
+    unit: Unit = "random"
+    filter: str | None = None
+    errors: AccelerometerErrors = field(default_factory=AccelerometerErrors)
+    mounting_deg: tuple[Angle, Angle, Angle] = (0.0, 0.0, 0.0)
+    mounting_error_deg: tuple[Angle, Angle, Angle] = (0.0, 0.0, 0.0)
+    position: tuple[Arm, Arm, Arm] = (0.0, 0.0, 0.0)
+    rate_error_percent: Annotated[float, Interval(ge=-20.0, le=20.0)] = 0.0
+    jitter: Annotated[float, Interval(ge=0.0, le=0.1)] = 0.0
+    delay: Annotated[float, Interval(ge=0.0, le=0.5)] = 0.0
+    delay_jitter: Annotated[float, Interval(ge=0.0, le=0.1)] = 0.0
+    thermal: ThermalSettings = field(default_factory=ThermalSettings)
+    faults: tuple[Fault, ...] = ()
 
     def description(self) -> AccelerometerDescription:
         """Return the part as chosen, for the unit and for the filter; ValueError if there is none such."""
-        part = catalogue.accelerometer(self.preset).select(range_g=self.range_g, rate=self.rate)
-        return part.scaled(self.noise_scale)
+        part = catalogue.accelerometer(self.preset).select(range_g=self.range_g, rate=self.rate, filter=self.filter)
+        return part.scaled(self.noise_scale, self.errors)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +230,17 @@ class PressureSettings:
         Factor on the part's white noise, an assumption about the part: it holds for the unit and for the filter.
     offset_pa : float
         Offset beside that of the drawn unit, Pa.
+    unit : str
+        Which unit flies: "random", drawn within the datasheet; "typical", off by one standard deviation; "ideal".
+    errors : group
+        Factors on the datasheet's other errors.
+    normal : (x, y, z) or None
+        Normal of the membrane, body axes, along which it feels acceleration; None is (1, 0, 0) for the total and
+        (0, 0, 1) for the static sensor, at right angles as on the published head.
+    rate_error_percent : float
+        Error of the oscillator beside that of the drawn unit, %.
+    faults : list of groups
+        What breaks.
     """
 
     preset: str = "bmp390"
@@ -103,11 +248,116 @@ class PressureSettings:
     iir: Annotated[int, Ge(0)] = 0
     noise_scale: Annotated[float, Interval(ge=0.0, le=1000.0)] = 1.0
     offset_pa: Annotated[float, Interval(ge=-100000.0, le=100000.0)] = 0.0
+    unit: Unit = "random"
+    errors: PressureErrors = field(default_factory=PressureErrors)
+    normal: Vector | None = None
+    rate_error_percent: Annotated[float, Interval(ge=-20.0, le=20.0)] = 0.0
+    faults: tuple[Fault, ...] = ()
 
     def description(self) -> PressureDescription:
         """Return the part as chosen, for the unit and for the filter; ValueError if there is none such."""
         part = catalogue.pressure_sensor(self.preset).select(mode=self.mode, iir=self.iir)
-        return part.scaled(self.noise_scale)
+        return part.scaled(self.noise_scale, self.errors)
+
+
+@dataclass(frozen=True, slots=True)
+class PortFault:
+    """Something that goes wrong with a port between two times.
+
+    Attributes
+    ----------
+    kind : str
+        "blocked": closed, what is behind it keeps its pressure; "leak": air comes in from the bay behind the port;
+        "ice": closes gradually over `duration` and stays shut until `stop`; "water": a plug of water in the tube.
+    start, stop : float
+        s.
+    duration : float
+        Time in which ice closes the port, s.
+    time_constant : float
+        With which the pressure behind the leak goes to that of the bay when the port is blocked, s.
+    water_length : float
+        Length of the plug, m.
+    """
+
+    kind: Literal["blocked", "leak", "ice", "water"]
+    start: Time = 0.0
+    stop: Time = FOREVER
+    duration: Annotated[float, Interval(gt=0.0, le=3600.0)] = 5.0
+    time_constant: Annotated[float, Interval(gt=0.0, le=3600.0)] = 1.0
+    water_length: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.005
+
+
+@dataclass(frozen=True, slots=True)
+class TubeSettings:
+    """The tube from a port to its sensor.
+
+    Attributes
+    ----------
+    length : float
+        m; 0 is none, and then neither volume nor diameter matter.
+    diameter : float
+        Inner diameter, m.
+    volume : float
+        Of the cavity at the sensor, m³.
+    direction : (x, y, z) or None
+        From the port to the sensor, body axes, of any length; None is (-1, 0, 0), straight aft, for the total and
+        (0, 0, 1), straight down, for the static port.
+    """
+
+    length: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.0
+    diameter: Annotated[float, Interval(ge=1e-4, le=0.05)] = 2e-3
+    volume: Annotated[float, Interval(ge=1e-10, le=1e-3)] = 5e-8
+    direction: Vector | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TotalPortSettings:
+    """The total-pressure port.
+
+    Attributes
+    ----------
+    probe : str
+        "ideal": reads p_total at any angle; "plain", "bevelled" or "kiel": loses total pressure beyond its angle.
+    slipstream : float
+        Dynamic pressure at full throttle over the free one, less one: the part of the propeller's wake it stands in.
+    tube : group
+    faults : list of groups
+    """
+
+    probe: Literal["ideal", "plain", "bevelled", "kiel"] = "ideal"
+    slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
+    tube: TubeSettings = field(default_factory=TubeSettings)
+    faults: tuple[PortFault, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class StaticPortSettings:
+    """The static port and its position error, (p_read - p_s)/q_c = c0 + cα α + cαα α² + cββ β² + cM M².
+
+    Attributes
+    ----------
+    error : float
+        c0.
+    error_alpha : float
+        cα, 1/rad.
+    error_alpha2, error_beta2 : float
+        cαα and cββ, 1/rad².
+    error_mach2 : float
+        cM.
+    slipstream : float
+        Dynamic pressure at full throttle over the free one, less one: the part of the propeller's wake it stands in.
+    tube : group
+    faults : list of groups
+    """
+
+    error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.0
+    error_alpha: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
+    error_alpha2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
+    error_beta2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
+    error_mach2: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
+    slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
+    tube: TubeSettings = field(default_factory=TubeSettings)
+    faults: tuple[PortFault, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +367,12 @@ class AirDataSettings:
     Attributes
     ----------
     total, static : PressureSettings
+    total_port, static_port : group
+        What is between the air and the two sensors.
+    pipe : float
+        Length of the metal pipes before both sensors, m, in place of the ports' own tubes; the published head has 0.05.
+    thermal : group
+        Temperature of the dies, which the thermometer reads.
     rate : float
         Polls a second, Hz.
     tare : {"covered", "open", "none"}
@@ -133,3 +389,7 @@ class AirDataSettings:
     tare: Tare = "covered"
     tare_duration: Annotated[float, Interval(gt=0.0, le=60.0)] = 1.0
     cover_off: Annotated[float, Interval(ge=0.0, le=60.0)] = 0.5
+    total_port: TotalPortSettings = field(default_factory=TotalPortSettings)
+    static_port: StaticPortSettings = field(default_factory=StaticPortSettings)
+    pipe: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.0
+    thermal: ThermalSettings = field(default_factory=ThermalSettings)

@@ -16,10 +16,10 @@ from math import ceil, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from sensors.description import G0
 from sensors.noise import band_limited
 from sensors.settings import VibrationSettings
 from sensors.streams import Streams
+from sensors.unit import G0
 
 PERIOD = 32768  # steps after which the noise repeats, without a seam: 33 s at 1 kHz
 RING_DECAYS = 20  # the ring is dropped when it has fallen to e^-20 = 2e-9

@@ -1,145 +1,65 @@
-"""What is known of a part before one is bought: its datasheet as numbers, in one range, rate and mode.
+"""What is known of an absolute pressure sensor before one is bought: its datasheet as numbers, in one mode.
 
-One description serves two readers. The simulator draws a unit from it (`draw_error` for each turn-on error, the noise
-sequences from its densities); a filter takes its plain numbers from it (`noise_sd`, `random_walk`, `correlation_time`,
-`resolution`, …). That the two agree is then the rule, and a mismatch is something that a study chooses.
+White noise: the datasheet's figure a conversion, for its mode, used as it is; quantisation is part of it. The part's
+digital filter y += a (x - y) leaves a/(2 - a) of its variance and correlates what it leaves.
 
-White noise of an accelerometer: σ = n √(ENBW), with n the one-sided density. Its decimation filter passes f/2 of an
-output rate f and is steep, so ENBW = f/2 and σ = n √(f/2). White noise of a pressure sensor: the datasheet's figure a
-conversion, for its mode, used as it is.
+Every term has a factor on what the datasheet says of it (`PressureErrors`): 0 switches it off, 3 is three times as bad.
+The factors become part of the description, so the simulated unit and a filter go by the same numbers.
 """
 
 from dataclasses import dataclass, replace
 from math import acos, pi, sqrt
-from typing import Literal, TypeVar
-
-import numpy as np
 
 from sensors.choice import choose
+from sensors.unit import DriftModel, Factor
 
-Triple = tuple[float, float, float]
-
-Item = TypeVar("Item")
-
-Unit = Literal["random", "typical", "ideal"]
-
-G0 = 9.80665  # standard gravity, m/s² (CGPM 1901)
-
-# x + ROUND - ROUND is x rounded to a whole number, ties to even, for |x| < 2^51, and NaN for NaN: the sum has no bits
-# left below 1 (IEEE 754 double). It costs half of what round() does.
-ROUND = 1.5 * 2.0**52
-
-
-def draw_error(generator: np.random.Generator, sd: float, limit: float, unit: Unit) -> float:
-    """Return a turn-on error of one unit.
-
-    Parameters
-    ----------
-    generator : numpy.random.Generator
-    sd : float
-        Standard deviation over units.
-    limit : float
-        The datasheet's guaranteed bound: a part beyond it is not sold, so it is drawn again.
-    unit : {"random", "typical", "ideal"}
-        Drawn; off by exactly one standard deviation; without error.
-    """
-    if unit == "ideal":
-        return 0.0
-    if unit == "typical":
-        return sd
-    while True:
-        error = float(generator.normal()) * sd
-        if abs(error) <= limit:
-            return error
+UNQUANTISED_STEP = 1e-9  # Pa and K: stands for no quantisation
 
 
 @dataclass(frozen=True, slots=True)
-class AccelerometerDescription:
-    """A three-axis accelerometer at one range and rate; SI, but for names that end in _g.
+class PressureErrors:
+    """Factors on the datasheet's figures for a pressure sensor: 0 is without, 1 as the datasheet has it.
 
     Attributes
     ----------
-    name, document : str
-        The preset's name; where its numbers are from.
-    ranges_g, rates : tuple of float
-        What the part can be set to: ±range in g, output rates in Hz.
-    range_g, rate : float
-        What it is set to.
-    bits : tuple of int
-        Width of a reading, sign included, for each of `ranges_g`.
-    noise_densities : tuple of (x, y, z)
-        One-sided root density of the white noise for each of `ranges_g`, (m/s²)/√Hz.
-    noise_rate_floor : float
-        Rate below which the noise a sample stays as it is at this rate, Hz (0: none).
-    bias_sd, bias_limit : (x, y, z)
-        Zero-g offset at turn-on: standard deviation over units and bound, m/s².
-    scale_sd, scale_limit : float
-        Scale error, a fraction, alike.
-    drift_sd, correlation_time : float
-        In-run bias drift as a Gauss-Markov process, m/s² and s.
+    offset : float
+        Offset at turn-on.
+    solder : float
+        Shift of the offset by soldering.
+    scale : float
+        Scale error.
+    temperature : float
+        Temperature coefficient of the offset.
+    acceleration : float
+        Acceleration sensitivity of the membrane.
+    thermometer : float
+        Offset of the thermometer.
+    drift : float
+        In-run drift.
     random_walk : float
-        In-run bias random walk, (m/s²)/√s.
+        In-run random walk.
+    clock : float
+        Error of the part's oscillator.
+    drift_model : str
+        How the drift wanders: "gauss-markov", one correlation time, or "flicker", true 1/f noise.
+    saturation : bool
+        Whether readings end at the range.
+    quantisation : bool
+        Whether readings come in steps.
     """
 
-    name: str
-    document: str
-    ranges_g: tuple[float, ...]
-    rates: tuple[float, ...]
-    range_g: float
-    rate: float
-    bits: tuple[int, ...]
-    noise_densities: tuple[Triple, ...]
-    noise_rate_floor: float
-    bias_sd: Triple
-    bias_limit: Triple
-    scale_sd: float
-    scale_limit: float
-    drift_sd: float
-    correlation_time: float
-    random_walk: float
-
-    def select(self, *, range_g: float | None = None, rate: float | None = None) -> "AccelerometerDescription":
-        """Return the same part set to another range (g) or output rate (Hz); ValueError if it has none such."""
-        return replace(
-            self,
-            range_g=self.range_g if range_g is None else choose(f"{self.name}: range_g", float(range_g), self.ranges_g),
-            rate=self.rate if rate is None else choose(f"{self.name}: rate", float(rate), self.rates),
-        )
-
-    def scaled(self, noise_scale: float) -> "AccelerometerDescription":
-        """Return a part that is as this one but for its white noise: an assumption about the part, unit and filter."""
-        densities = tuple((x * noise_scale, y * noise_scale, z * noise_scale) for x, y, z in self.noise_densities)
-        return replace(self, noise_densities=densities)
-
-    @property
-    def range(self) -> float:
-        """Largest specific force of either sign, m/s²."""
-        return self.range_g * G0
-
-    @property
-    def resolution(self) -> float:
-        """Least significant bit, m/s²."""
-        return self.range / float(1 << (self._at_range(self.bits) - 1))
-
-    @property
-    def bandwidth(self) -> float:
-        """The -3 dB frequency of the part's signal path, Hz."""
-        return self.rate / 2.0
-
-    @property
-    def noise_density(self) -> Triple:
-        """One-sided root density of the white noise at this range, (m/s²)/√Hz."""
-        return self._at_range(self.noise_densities)
-
-    @property
-    def noise_sd(self) -> Triple:
-        """Standard deviation of the white noise a sample at this range and rate, m/s²."""
-        root = sqrt(max(self.rate, self.noise_rate_floor) / 2.0)
-        x, y, z = self.noise_density
-        return x * root, y * root, z * root
-
-    def _at_range(self, per_range: tuple[Item, ...]) -> Item:
-        return per_range[self.ranges_g.index(self.range_g)]
+    offset: Factor = 1.0
+    solder: Factor = 1.0
+    scale: Factor = 1.0
+    temperature: Factor = 1.0
+    acceleration: Factor = 1.0
+    thermometer: Factor = 1.0
+    drift: Factor = 1.0
+    random_walk: Factor = 1.0
+    clock: Factor = 1.0
+    drift_model: DriftModel = "gauss-markov"
+    saturation: bool = True
+    quantisation: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,6 +112,12 @@ class PressureDescription:
         Where the absolute accuracy is stated, Pa: the scale error turns about this point.
     offset_sd, offset_limit : float
         Turn-on offset: standard deviation over units and bound, Pa.
+    offset_tc_sd, offset_tc_limit : float
+        Its temperature coefficient, Pa/K, alike.
+    solder : (float, float)
+        Shift of the offset by soldering, least and greatest, Pa: three standard deviations from their middle.
+    acceleration_sd, acceleration_limit : float
+        Sensitivity of the membrane to specific force along its normal, Pa/(m/s²), alike.
     scale_sd, scale_limit : float
         Scale error, Pa/Pa, alike.
     rate_sd, rate_limit : float
@@ -206,6 +132,8 @@ class PressureDescription:
         Step of its reading, K.
     noise_scale : float
         Factor on the white noise of pressure and temperature.
+    errors : PressureErrors
+        Factors that are already in the numbers above, and what is switched off.
     """
 
     name: str
@@ -218,6 +146,11 @@ class PressureDescription:
     reference_pressure: float
     offset_sd: float
     offset_limit: float
+    offset_tc_sd: float
+    offset_tc_limit: float
+    solder: tuple[float, float]
+    acceleration_sd: float
+    acceleration_limit: float
     scale_sd: float
     scale_limit: float
     rate_sd: float
@@ -229,6 +162,7 @@ class PressureDescription:
     temperature_offset_limit: float
     temperature_resolution: float
     noise_scale: float = 1.0
+    errors: PressureErrors = PressureErrors()
 
     def select(self, *, mode: str | None = None, iir: int | None = None) -> "PressureDescription":
         """Return the same part in another mode ("x8/x1") or with another filter coefficient; ValueError if none."""
@@ -241,14 +175,40 @@ class PressureDescription:
             self, mode=chosen, iir=self.iir if iir is None else choose(f"{self.name}: iir", iir, coefficients)
         )
 
-    def scaled(self, noise_scale: float) -> "PressureDescription":
-        """Return a part that is as this one but for its white noise: an assumption about the part, unit and filter."""
-        return replace(self, noise_scale=self.noise_scale * noise_scale)
+    def scaled(self, noise_scale: float, errors: PressureErrors | None = None) -> "PressureDescription":
+        """Return a part with its white noise and its errors times these factors, for the unit and for a filter."""
+        e = PressureErrors() if errors is None else errors
+        low, high = self.solder
+        return replace(
+            self,
+            noise_scale=self.noise_scale * noise_scale,
+            offset_sd=self.offset_sd * e.offset,
+            offset_limit=self.offset_limit * e.offset,
+            offset_tc_sd=self.offset_tc_sd * e.temperature,
+            offset_tc_limit=self.offset_tc_limit * e.temperature,
+            solder=(low * e.solder, high * e.solder),
+            acceleration_sd=self.acceleration_sd * e.acceleration,
+            acceleration_limit=self.acceleration_limit * e.acceleration,
+            scale_sd=self.scale_sd * e.scale,
+            scale_limit=self.scale_limit * e.scale,
+            rate_sd=self.rate_sd * e.clock,
+            rate_limit=self.rate_limit * e.clock,
+            drift_sd=self.drift_sd * e.drift,
+            random_walk=self.random_walk * e.random_walk,
+            temperature_offset_sd=self.temperature_offset_sd * e.thermometer,
+            temperature_offset_limit=self.temperature_offset_limit * e.thermometer,
+            errors=e,
+        )
 
     @property
     def resolution(self) -> float:
         """Step of a pressure reading before the digital filter, Pa."""
-        return self.mode.resolution
+        return self.mode.resolution if self.errors.quantisation else UNQUANTISED_STEP
+
+    @property
+    def temperature_step(self) -> float:
+        """Step of a temperature reading before the digital filter, K."""
+        return self.temperature_resolution if self.errors.quantisation else UNQUANTISED_STEP
 
     @property
     def rate(self) -> float:

@@ -1,0 +1,237 @@
+"""What is known of an accelerometer before one is bought: its datasheet as numbers, at one range, rate and filter.
+
+White noise: σ = n √(ENBW), n the one-sided density. Where the part's own filter leaves all of f/2 of an output rate f,
+its decimation is steep, ENBW = f/2 and σ = n √(f/2). Where it passes less, the readings' noise is that of n behind one
+or two poles at the output rate, and ENBW is theirs (`sensors.noise.enbw`).
+
+Every term has a factor on what the datasheet says of it (`AccelerometerErrors`): 0 switches it off, 3 is three times as
+bad. The factors become part of the description, so the simulated unit and a filter go by the same numbers.
+"""
+
+from dataclasses import dataclass, replace
+from math import sqrt
+from typing import TypeVar
+
+from sensors.choice import choose
+from sensors.noise import enbw
+from sensors.unit import G0, DriftModel, Factor, Triple
+
+Item = TypeVar("Item")
+
+UNQUANTISED_BITS = 40  # stand for no quantisation: steps of range/2^39, 6e-10 m/s² at ±32 g
+
+
+@dataclass(frozen=True, slots=True)
+class AccelerometerErrors:
+    """Factors on the datasheet's figures for the accelerometer: 0 is without, 1 as the datasheet has it.
+
+    Attributes
+    ----------
+    bias : float
+        Zero-g offset at turn-on.
+    scale : float
+        Scale error.
+    cross_axis : float
+        Misalignment and cross-axis sensitivity.
+    nonlinearity : float
+        Cubic nonlinearity, and the quadratic one that rectifies vibration.
+    temperature : float
+        Temperature coefficients of offset and scale.
+    drift : float
+        In-run bias instability.
+    random_walk : float
+        In-run random walk of the bias.
+    clock : float
+        Error of the output rate.
+    drift_model : str
+        How the bias instability wanders: "gauss-markov", one correlation time, or "flicker", true 1/f noise.
+    bandwidth : bool
+        Whether the signal passes the part's low-pass; the noise keeps its figure.
+    saturation : bool
+        Whether readings end at the range.
+    quantisation : bool
+        Whether readings come in steps.
+    """
+
+    bias: Factor = 1.0
+    scale: Factor = 1.0
+    cross_axis: Factor = 1.0
+    nonlinearity: Factor = 1.0
+    temperature: Factor = 1.0
+    drift: Factor = 1.0
+    random_walk: Factor = 1.0
+    clock: Factor = 1.0
+    drift_model: DriftModel = "gauss-markov"
+    bandwidth: bool = True
+    saturation: bool = True
+    quantisation: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class AccelerometerDescription:
+    """A three-axis accelerometer at one range, rate and filter; SI, but for names that end in _g.
+
+    Attributes
+    ----------
+    name, document : str
+        The preset's name; where its numbers are from.
+    ranges_g, rates, filters : tuple
+        What the part can be set to: ±range in g, output rates in Hz, names of its low-pass settings.
+    range_g, rate, filter : float, float, str
+        What it is set to.
+    bits : tuple of int
+        Width of a reading, sign included, for each of `ranges_g`.
+    bandwidths : tuple of tuple of float
+        -3 dB frequency, Hz, for each of `filters` and each of `rates`; 0 where the part has no such combination.
+    poles : int
+        Poles of the low-pass that stands for the part's signal path, 1 or 2 (Butterworth).
+    noise_densities : tuple of (x, y, z)
+        One-sided root density of the white noise for each of `ranges_g`, (m/s²)/√Hz.
+    noise_rate_floor : float
+        Rate below which the noise a sample stays as it is at this rate, Hz (0: none).
+    bias_sd, bias_limit : (x, y, z)
+        Zero-g offset at turn-on: standard deviation over units and bound, m/s².
+    bias_tc_sd, bias_tc_limit : (x, y, z)
+        Its temperature coefficient, alike, (m/s²)/K.
+    scale_sd, scale_limit, scale_tc_sd, scale_tc_limit : float
+        Scale error, a fraction, and its temperature coefficient, 1/K, alike.
+    cross_axis_sd, cross_axis_limit : float
+        Each off-diagonal term of the sensitivity matrix, a fraction, alike.
+    nonlinearity_sd : float
+        Greatest deviation from the best straight line, of the range: that of a cubic.
+    rectification_sd : float
+        Offset that vibration adds, by its mean square: the coefficient of a quadratic, 1/(m/s²).
+    drift_sd, correlation_time : float
+        In-run bias drift as a Gauss-Markov process, m/s² and s.
+    random_walk : float
+        In-run bias random walk, (m/s²)/√s.
+    rate_sd, rate_limit : float
+        Relative error of the output rate, alike.
+    errors : AccelerometerErrors
+        Factors that are already in the numbers above, and what is switched off.
+    """
+
+    name: str
+    document: str
+    ranges_g: tuple[float, ...]
+    rates: tuple[float, ...]
+    filters: tuple[str, ...]
+    range_g: float
+    rate: float
+    filter: str
+    bits: tuple[int, ...]
+    bandwidths: tuple[tuple[float, ...], ...]
+    poles: int
+    noise_densities: tuple[Triple, ...]
+    noise_rate_floor: float
+    bias_sd: Triple
+    bias_limit: Triple
+    bias_tc_sd: Triple
+    bias_tc_limit: Triple
+    scale_sd: float
+    scale_limit: float
+    scale_tc_sd: float
+    scale_tc_limit: float
+    cross_axis_sd: float
+    cross_axis_limit: float
+    nonlinearity_sd: float
+    rectification_sd: float
+    drift_sd: float
+    correlation_time: float
+    random_walk: float
+    rate_sd: float
+    rate_limit: float
+    errors: AccelerometerErrors = AccelerometerErrors()
+
+    def select(
+        self, *, range_g: float | None = None, rate: float | None = None, filter: str | None = None
+    ) -> "AccelerometerDescription":
+        """Return the same part set to another range (g), output rate (Hz) or low-pass; ValueError if it has none."""
+        part = replace(
+            self,
+            range_g=self.range_g if range_g is None else choose(f"{self.name}: range_g", float(range_g), self.ranges_g),
+            rate=self.rate if rate is None else choose(f"{self.name}: rate", float(rate), self.rates),
+            filter=self.filter if filter is None else choose(f"{self.name}: filter", filter, self.filters),
+        )
+        if not part.datasheet_bandwidth:
+            available = [rate for rate, width in zip(part.rates, part._passed, strict=True) if width]
+            listed = ", ".join(f"{rate:g}" for rate in available)
+            raise ValueError(
+                f"{self.name}: filter {part.filter!r} does not exist at {part.rate:g} Hz; allowed: {listed}"
+            )
+        return part
+
+    def scaled(self, noise_scale: float, errors: AccelerometerErrors | None = None) -> "AccelerometerDescription":
+        """Return a part with its white noise and its errors times these factors, for the unit and for a filter."""
+        e = AccelerometerErrors() if errors is None else errors
+        return replace(
+            self,
+            noise_densities=tuple(_times(density, noise_scale) for density in self.noise_densities),
+            bias_sd=_times(self.bias_sd, e.bias),
+            bias_limit=_times(self.bias_limit, e.bias),
+            bias_tc_sd=_times(self.bias_tc_sd, e.temperature),
+            bias_tc_limit=_times(self.bias_tc_limit, e.temperature),
+            scale_sd=self.scale_sd * e.scale,
+            scale_limit=self.scale_limit * e.scale,
+            scale_tc_sd=self.scale_tc_sd * e.temperature,
+            scale_tc_limit=self.scale_tc_limit * e.temperature,
+            cross_axis_sd=self.cross_axis_sd * e.cross_axis,
+            cross_axis_limit=self.cross_axis_limit * e.cross_axis,
+            nonlinearity_sd=self.nonlinearity_sd * e.nonlinearity,
+            rectification_sd=self.rectification_sd * e.nonlinearity,
+            drift_sd=self.drift_sd * e.drift,
+            random_walk=self.random_walk * e.random_walk,
+            rate_sd=self.rate_sd * e.clock,
+            rate_limit=self.rate_limit * e.clock,
+            errors=e,
+        )
+
+    @property
+    def range(self) -> float:
+        """Largest specific force of either sign, m/s²."""
+        return self.range_g * G0
+
+    @property
+    def resolution(self) -> float:
+        """Least significant bit, m/s²."""
+        bits = self._at_range(self.bits) if self.errors.quantisation else UNQUANTISED_BITS
+        return self.range / float(1 << (bits - 1))
+
+    @property
+    def datasheet_bandwidth(self) -> float:
+        """The -3 dB frequency of the part's signal path at this rate and filter, Hz; 0 if there is no such setting."""
+        return self._passed[self.rates.index(self.rate)]
+
+    @property
+    def bandwidth(self) -> float:
+        """The -3 dB frequency that the signal passes, Hz: the datasheet's, or infinite if it is switched off."""
+        return self.datasheet_bandwidth if self.errors.bandwidth else float("inf")
+
+    @property
+    def noise_density(self) -> Triple:
+        """One-sided root density of the white noise at this range, (m/s²)/√Hz."""
+        return self._at_range(self.noise_densities)
+
+    @property
+    def white_sd(self) -> Triple:
+        """Standard deviation a sample of the white noise ahead of the part's low-pass, at the output rate, m/s²."""
+        return _times(self.noise_density, sqrt(max(self.rate, self.noise_rate_floor) / 2.0))
+
+    @property
+    def noise_sd(self) -> Triple:
+        """Standard deviation a sample of the readings' noise at this range, rate and filter, m/s²."""
+        passed = enbw(self.datasheet_bandwidth, self.rate, self.poles) / (self.rate / 2.0)
+        return _times(self.white_sd, sqrt(passed))
+
+    @property
+    def _passed(self) -> tuple[float, ...]:
+        """-3 dB frequency at each rate with this filter, Hz."""
+        return self.bandwidths[self.filters.index(self.filter)]
+
+    def _at_range(self, per_range: tuple[Item, ...]) -> Item:
+        return per_range[self.ranges_g.index(self.range_g)]
+
+
+def _times(triple: Triple, factor: float) -> Triple:
+    x, y, z = triple
+    return x * factor, y * factor, z * factor

@@ -1,0 +1,58 @@
+"""One unit of a part, and what all descriptions share: standard gravity, rounding, the draw of a turn-on error.
+
+A datasheet says how far units of a part spread; a unit is one draw of it. Typical figures are read as one standard
+deviation where the document says nothing else, guaranteed limits as bounds that no unit sold exceeds.
+"""
+
+from math import inf
+from typing import Annotated, Literal
+
+import numpy as np
+from annotated_types import Interval
+
+Triple = tuple[float, float, float]
+Unit = Literal["random", "typical", "ideal"]
+DriftModel = Literal["gauss-markov", "flicker"]
+Factor = Annotated[float, Interval(ge=0.0, le=1000.0)]
+
+G0 = 9.80665  # standard gravity, m/s² (CGPM 1901)
+REFERENCE_TEMPERATURE = 298.15  # K, 25 °C: where datasheets state their figures and temperature errors are zero
+
+# x + ROUND - ROUND is x rounded to a whole number, ties to even, for |x| < 2^51, and NaN for NaN: the sum has no bits
+# left below 1 (IEEE 754 double). It costs half of what round() does.
+ROUND = 1.5 * 2.0**52
+
+
+def draw_error(generator: np.random.Generator, sd: float, limit: float, unit: Unit) -> float:
+    """Return a turn-on error of one unit.
+
+    Parameters
+    ----------
+    generator : numpy.random.Generator
+    sd : float
+        Standard deviation over units.
+    limit : float
+        The datasheet's guaranteed bound: a part beyond it is not sold, so it is drawn again.
+    unit : {"random", "typical", "ideal"}
+        Drawn; off by exactly one standard deviation; without error.
+    """
+    if unit == "ideal":
+        return 0.0
+    if unit == "typical":
+        return sd
+    while True:
+        error = float(generator.normal()) * sd
+        if abs(error) <= limit:
+            return error
+
+
+def quantise(value: float, step: float) -> float:
+    """Return `value` rounded to a multiple of `step`, ties to even; NaN stays NaN."""
+    return (value / step + ROUND - ROUND) * step
+
+
+def clip(value: float, low: float = -inf, high: float = inf) -> float:
+    """Return `value` within its bounds; NaN stays NaN, which max and min would turn into a bound."""
+    if value < low:
+        return low
+    return high if value > high else value
