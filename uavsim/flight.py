@@ -34,6 +34,8 @@ UNITS: dict[str, dict[str, str]] = {
         "p_total": "Pa",
         "p_static": "Pa",
         "valid": "",
+        "nis_total": "1",
+        "nis_static": "1",
     },
     "detector": {"t": "s", "level": "1", "count": "1", "total": "1", "triggered": "", "recognised": ""},
 }

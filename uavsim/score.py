@@ -265,14 +265,17 @@ def _pressure(flight: Judged, channel: str) -> dict[str, Any]:
     if channel == "total" and air["tare"] != "none":  # before, it is not tared, and a cover keeps the free stream out
         before &= time > flight.release_time - air["cover_off"] + SETTLED
     if not before.any():
-        return dict.fromkeys(("rmse", "rmse_raw", "reduction_percent", "bias"))
+        return dict.fromkeys(("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean"))
     bias = error[before].mean()
     rmse, rmse_raw = _rms(error[rows] - bias), _rms(raw[rows] - raw[before].mean())
+    nis = flight.estimate(f"nis_{channel}")[rows]
+    nis = nis[np.isfinite(nis)]
     return {
         "rmse": rmse,
         "rmse_raw": rmse_raw,
         "reduction_percent": _reduction(rmse, rmse_raw),
         "bias": _number(bias),
+        "nis_mean": _number(nis.mean()) if nis.size else None,
     }
 
 

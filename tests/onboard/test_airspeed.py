@@ -148,6 +148,42 @@ def test_white_noise_on_a_constant(gain):
     assert square / walk.variance == pytest.approx(1.0 / (2.0 - gain), rel=4.0 * spread)
 
 
+@pytest.mark.parametrize(("noise", "belief"), [(1.0, 1.0), (3.0, 3.0), (3.0, 1.0), (1.0, 3.0)])
+def test_nis_is_one_where_the_filter_believes_the_truth(noise, belief):
+    """A walk of the default Q read through 3.7 Pa times `noise` by a filter that believes 3.7 Pa times `belief`.
+
+    Right, innovations are white: n = 40 000, 4 deviations of a mean of χ²₁ are 4 √(2/n) = 2.8 %. Wrong, NIS is off by
+    more than a factor of 1.5 either way (its own value by the Riccati equation of the wrong filter, to 5 %).
+    """
+    n, q, r = 40_000, 43.8, 3.7**2
+    generator = np.random.default_rng(13)
+    truth = 1e5 + np.cumsum(generator.normal(0.0, math.sqrt(q), n))
+    readings = truth + generator.normal(0.0, noise * math.sqrt(r), n)
+    walk = RandomWalk(q, belief**2 * r)
+    nis = []
+    for z in readings.tolist():
+        walk.add(z)
+        nis.append(walk.nis)
+    assert math.isnan(nis[0])
+    mean = np.mean(nis[100:])
+    gain = steady_gain(q, belief**2 * r)
+    error = (q * (1.0 - gain) ** 2 + gain**2 * noise**2 * r) / (1.0 - (1.0 - gain) ** 2)  # variance of x − truth
+    expected = (error + q + noise**2 * r) / (belief**2 * r / (1.0 - gain))
+    assert mean == pytest.approx(expected, rel=0.05)
+    if noise == belief:
+        assert expected == pytest.approx(1.0, rel=1e-9)
+        assert mean == pytest.approx(1.0, rel=0.028)
+    else:
+        assert abs(math.log(mean)) > math.log(1.5)
+
+
+def test_a_missing_reading_has_no_nis():
+    walk = RandomWalk(43.8, 3.7**2)
+    for z in (1e5, 1e5 + 1.0, math.nan):
+        walk.add(z)
+    assert math.isnan(walk.nis)
+
+
 def test_consistent_on_a_random_walk():
     """On the truth that it believes in NEES is 1: n = 40 000 of φ = 1 − K = 0.2; 4 deviations are 3 %."""
     n, q, r = 40_000, 3.2, 1.0
@@ -178,7 +214,7 @@ def test_airspeed_is_that_of_the_filtered_pressures(model):
     for k, ((p_total, p_static), row) in enumerate(zip(readings, run(estimator, readings), strict=True), 1):
         total.add(p_total)
         static.add(p_static)
-        t, speed, _, raw, filtered_total, filtered_static, _ = row
+        t, speed, _, raw, filtered_total, filtered_static, *_ = row
         assert (t, filtered_total, filtered_static) == (0.01 * k, total.value, static.value)
         assert speed == pytest.approx(
             airdata.airspeed(total=total.value, static=static.value, temperature=KELVIN, **options), rel=1e-12
@@ -264,7 +300,7 @@ def test_wind_bounds_the_deviation_below_v_star_only():
 def test_sensors_without_noise():
     estimator = PaperFilter(EstimatorSettings(), NoiseModel(0.0, 0.0, 0.0))
     assert estimator.step(0.0, STATIC, STATIC, KELVIN, 0.0, 0.0)[1:3] == (0.0, 0.0)
-    _, speed, sd, raw, *_, valid = estimator.step(0.1, total_at(30.0), STATIC, KELVIN, 0.1, 0.1)
+    _, speed, sd, raw, _, _, valid, *_ = estimator.step(0.1, total_at(30.0), STATIC, KELVIN, 0.1, 0.1)
     assert (speed, raw) == (pytest.approx(30.0, rel=1e-9), speed)
     assert (sd, valid) == (0.0, True)
 

@@ -299,7 +299,7 @@ def reading(
     """One reading whose estimate is this airspeed at this height above the first one, m."""
     level = SETTINGS.height if height is None else height
     static = SEA_LEVEL * math.exp(-level * G / (287.05 * AIR))
-    box.estimator.next = (t, airspeed, 0.1, airspeed, static, static, valid)
+    box.estimator.next = (t, airspeed, 0.1, airspeed, static, static, valid, 1.0, 1.0)
     return box.air_data(t, static, static, air, t, t)
 
 
@@ -418,7 +418,7 @@ def test_height_is_counted_from_the_first_pressure() -> None:
         box = computer(2.02)
         for t, height in ((0.5, 0.0), (4.0, 10.0)):
             static = (SEA_LEVEL + site) * math.exp(-height * G / (287.05 * AIR))
-            box.estimator.next = (t, SETTINGS.airspeed, 0.1, 0.0, static, static, True)
+            box.estimator.next = (t, SETTINGS.airspeed, 0.1, 0.0, static, static, True, 1.0, 1.0)
             if t > 1.0:
                 feed(box, REST, 0.51, 2.0)
                 feed(box, 8.0 * G, 2.0, 2.4)

@@ -73,6 +73,8 @@ def made_up(*, push: float = PUSH, end: float = END, seed: int = 1) -> Flight:
             "airspeed_raw": true_speed + noise.normal(0.0, 0.2, polled.size),
             **air,
             "valid": true_speed > 5.0,
+            "nis_total": np.ones_like(true_speed),
+            "nis_static": np.ones_like(true_speed),
         }
     )
     tables = {"accelerometer": accelerometer, "air_data": air_data, "estimate": estimate, "detector": table}

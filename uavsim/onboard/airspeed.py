@@ -6,7 +6,8 @@ noise, and each has a scalar Kalman filter (its Algorithm 1 with f(x) = h(x) = x
     P⁻ = P + Q,    K = P⁻/(P⁻ + R),    x = x + K·(z − x),    P = (1 − K)·P⁻ = K·R
 
 with Q the growth of the walk's variance a sample and R the variance of a reading, both Pa². K settles where
-K²/(1 − K) = Q/R (`steady_gain`). The airspeed follows from the filtered pressures and the measured temperature by
+K²/(1 − K) = Q/R (`steady_gain`). NIS, the innovation squared over what the filter expects of it, (z − x)²/(P⁻ + R), has
+the mean 1 if pressure and sensor are as the filter believes. The airspeed follows from the filtered pressures and the measured temperature by
 `airdata`; the mean of p_t − p_s under the cover, the pair's tare, is taken off p_t first.
 
 Standard deviation of the airspeed
@@ -39,8 +40,8 @@ from annotated_types import Ge, Gt, Interval
 from uavsim import airdata
 from uavsim.airdata import MAX_TEMPERATURE, MIN_TEMPERATURE
 
-Estimate = tuple[float, float, float, float, float, float, bool]
-"""t s, airspeed m/s, airspeed_sd m/s, airspeed_raw m/s, p_total Pa (tared), p_static Pa, valid."""
+Estimate = tuple[float, float, float, float, float, float, bool, float, float]
+"""t s, airspeed m/s, airspeed_sd m/s, airspeed_raw m/s, p_total Pa (tared), p_static Pa, valid, nis_total, nis_static."""
 
 FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the clipped root
 VALID = 2.0  # V*; from here on the airspeed is called valid
@@ -123,6 +124,7 @@ class Channel(Protocol):
 
     value: float  # Pa, NaN before the first reading
     variance: float  # Pa², infinite before the first reading
+    nis: float  # normalised innovation squared of the last reading, NaN if it was the first or no pressure
 
     def add(self, reading: float) -> None:
         """Take the reading of one conversion, Pa; one that is no pressure only lets the variance grow."""
@@ -137,23 +139,25 @@ class RandomWalk:
         Growth of the walk's variance a sample and variance of a reading, Pa².
     """
 
-    __slots__ = ("_q", "_r", "value", "variance")
+    __slots__ = ("_q", "_r", "nis", "value", "variance")
 
     def __init__(self, q: float, r: float) -> None:
         self._q, self._r = q, r
-        self.value, self.variance = nan, inf
+        self.value, self.variance, self.nis = nan, inf, nan
 
     def add(self, reading: float) -> None:
         """Predict, and update if the reading is a pressure."""
         prior = self.variance + self._q
         if not 0.0 < reading < inf:
-            self.variance = prior
+            self.variance, self.nis = prior, nan
         elif prior == inf:
             self.value, self.variance = reading, self._r
         else:
-            gain = prior / (prior + self._r)
-            self.value += gain * (reading - self.value)
+            innovation, spread = reading - self.value, prior + self._r
+            gain = prior / spread
+            self.value += gain * innovation
             self.variance = gain * self._r
+            self.nis = innovation * innovation / spread
 
 
 class _Tare:
@@ -271,9 +275,10 @@ class PaperFilter:
         Returns
         -------
         tuple or None
-            t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid, as `Estimate`; airspeed_raw is that of
-            this reading alone, NaN where it lacks something; the pressures are the filtered ones, p_total tared. None
-            if t is NaN or not later than the last.
+            t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid, nis_total, nis_static, as `Estimate`;
+            airspeed_raw is that of this reading alone, NaN where it lacks something; the pressures are the filtered
+            ones, p_total tared; the last two are NaN where a channel has no new conversion. None if t is NaN or not
+            later than the last.
         """
         if not t > self._t:
             return None
@@ -303,10 +308,11 @@ class PaperFilter:
         raw = self._scale * self._relation(p_total - tare, p_static, temperature) if measured else nan
         total, static = self._total.value - tare, self._static.value
         speed = self._scale * self._relation(total, static, self._temperature)
+        nis_total, nis_static = self._total.nis if new_total else nan, self._static.nis if new_static else nan
         if covered or isnan(speed):
-            return t, 0.0, self._wind_sd, raw, total, static, False
+            return t, 0.0, self._wind_sd, raw, total, static, False, nis_total, nis_static
         sd, valid = self._spread(speed, total / static, static)
-        return t, speed, sd, raw, total, static, valid
+        return t, speed, sd, raw, total, static, valid, nis_total, nis_static
 
     def _spread(self, speed: float, ratio: float, static: float) -> tuple[float, bool]:
         """Return the airspeed's standard deviation and whether it is valid, by the law above."""
@@ -348,7 +354,7 @@ class FilterpyFilter(PaperFilter):
 class _FilterpyChannel:
     """One state of a filterpy filter of two random walks."""
 
-    __slots__ = ("_filter", "_h", "_index", "_q", "_r", "value", "variance")
+    __slots__ = ("_filter", "_h", "_index", "_q", "_r", "nis", "value", "variance")
 
     def __init__(self, both: Any, index: int, q: float, r: float) -> None:
         self._filter, self._index = both, index
@@ -357,11 +363,12 @@ class _FilterpyChannel:
         self._q = np.zeros((2, 2))
         self._q[index, index] = q
         self._r = np.array([[r]])
-        self.value, self.variance = nan, inf
+        self.value, self.variance, self.nis = nan, inf, nan
 
     def add(self, reading: float) -> None:
         both, index = self._filter, self._index
         missing = not 0.0 < reading < inf
+        self.nis = nan
         if isnan(self.value):
             if missing:
                 return
@@ -371,6 +378,7 @@ class _FilterpyChannel:
             both.predict(Q=self._q)
             if not missing:
                 both.update(np.array([[reading]]), R=self._r, H=self._h)
+                self.nis = float(both.y[0, 0] ** 2 / both.S[0, 0])
         self.value, self.variance = float(both.x[index, 0]), float(both.P[index, index])
 
 

@@ -33,8 +33,8 @@ STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
 LONGEST_STEP = 0.02  # s; a gap between readings counts as no more than this in an integral
 RAIL_BLOCK = 0.5  # s, over which the mean on the rail is taken; the block before the last one is used
 
-Estimate = tuple[float, float, float, float, float, float, bool]
-"""t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid."""
+Estimate = tuple[float, float, float, float, float, float, bool, float, float]
+"""t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid, nis_total, nis_static."""
 Commands = tuple[float, float, float, float, float]
 """Wing (0, 1), throttle (0 … 1), pitch, roll (rad), stabiliser engaged (0, 1)."""
 
@@ -262,7 +262,7 @@ class FlightComputer:
 
     def _hold(self, estimate: Estimate, temperature: float) -> None:
         """Airspeed by throttle, height by pitch. Without a valid estimate both stay as they are."""
-        t, airspeed, _, _, _, p_static, valid = estimate
+        t, airspeed, _, _, _, p_static, valid, _, _ = estimate
         dt = min(max(t - self._last_estimate, 0.0), 10 * LONGEST_STEP)
         self._last_estimate = t
         if not valid or self._reference_pressure is None or not isfinite(temperature):
