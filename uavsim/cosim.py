@@ -216,12 +216,16 @@ class Cosimulation:
 
 
 def believed_noise(scenario: Scenario) -> airspeed.NoiseModel:
-    """What the estimator believes of the head: numbers of the description that the simulated units are drawn from."""
+    """What the estimator believes of the head.
+
+    Numbers of the description that the simulated units are drawn from, through the scenario's `[mismatch]`.
+    """
     total, static = scenario.air_data.total.description(), scenario.air_data.static.description()
+    belief = scenario.mismatch
     return airspeed.NoiseModel(
-        total_sd=total.noise_sd,
-        static_sd=static.noise_sd,
-        temperature_sd=math.hypot(static.temperature_noise_sd, static.temperature_offset_sd),
+        total_sd=belief.total_noise * total.noise_sd,
+        static_sd=belief.static_noise * static.noise_sd,
+        temperature_sd=belief.temperature * math.hypot(static.temperature_noise_sd, static.temperature_offset_sd),
     )
 
 
@@ -238,6 +242,7 @@ def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
         force_factor=draws.force_factor,
         random_seed=draws.plant_seed,
         step_rate=STEP_RATE,
+        accelerometer_position=scenario.accelerometer.position,
     )
 
 

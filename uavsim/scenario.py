@@ -29,6 +29,7 @@ from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, Launch
 from uavsim.score import Judged, score
 from uavsim.settings import SettingError
 
+Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
 Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout"]
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
@@ -44,6 +45,25 @@ class Requirement:
     key: str
     minimum: float | None = None
     maximum: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MismatchSettings:
+    """What the filter believes of its sensors over what their descriptions say: 1 is the truth about them.
+
+    A noise that is changed in `air_data` is known to the filter; one that is changed here is not.
+
+    Attributes
+    ----------
+    total_noise, static_noise : float
+        Factor on the standard deviation of a reading of the pressure.
+    temperature : float
+        Factor on the standard deviation of the temperature.
+    """
+
+    total_noise: Belief = 1.0
+    static_noise: Belief = 1.0
+    temperature: Belief = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +97,7 @@ class Scenario:
     air_data: AirDataSettings = field(default_factory=AirDataSettings)
     detector: DetectorSettings = field(default_factory=DetectorSettings)
     estimator: EstimatorSettings = field(default_factory=EstimatorSettings)
+    mismatch: MismatchSettings = field(default_factory=MismatchSettings)
     flight_computer: FlightComputerSettings = field(default_factory=FlightComputerSettings)
     requirements: tuple[Requirement, ...] = ()
 

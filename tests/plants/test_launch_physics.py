@@ -147,13 +147,16 @@ def test_free_fall_reads_nothing(in_vacuum: JsbsimPlant) -> None:
         assert np.abs(truth[axis][free]).max() < 1e-3 + spin
 
 
-def test_specific_force_is_the_sensors_acceleration_less_gravity() -> None:
+@pytest.mark.parametrize("position", [(0.0, 0.0, 0.0), (0.35, -0.15, 0.1)])
+def test_specific_force_is_the_sensors_acceleration_less_gravity(position: tuple[float, float, float]) -> None:
     """f = R^T (d2/dt2 of the sensor's place - g), differentiated numerically, through stroke, tip-off and opening.
 
     In air, wings opening at full speed, with wind: all terms of the lever arm and the moving centre of gravity count.
     Tolerance 0.03 m/s^2 rms of a second difference over 4 ms, away from the edges of the contact forces.
     """
-    settings = JsbsimSettings(AircraftSettings(), WIND, LauncherSettings(), 1.4, RELEASE)
+    settings = JsbsimSettings(
+        AircraftSettings(), WIND, LauncherSettings(), 1.4, RELEASE, accelerometer_position=position
+    )
     plant = JsbsimPlant(settings)
     for k in range(1400):
         if k == 700:
@@ -243,3 +246,27 @@ def test_a_flight_that_diverges_beyond_sound_still_gives_its_record() -> None:
     truth = plant.truth()
     assert truth["mach"].max() > 1.0
     assert len(truth["p_total"]) == 101
+
+
+def test_the_accelerometers_place_is_forward_right_and_down_of_the_eyepoint() -> None:
+    """Structural axes point aft and up: 1 m forward, 2 m right, 3 m down of it, exactly."""
+    short = LauncherSettings()
+    here, there = (
+        JsbsimPlant(
+            JsbsimSettings(
+                AircraftSettings(), EnvironmentSettings(), short, 0.01, RELEASE, accelerometer_position=place
+            )
+        )
+        for place in ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0))
+    )
+    moved = np.subtract(there._lever(there.row), here._lever(here.row))
+    assert moved == pytest.approx([1.0, 2.0, 3.0], abs=1e-12)
+
+
+def test_flow_is_the_recorded_air(catapult: JsbsimPlant) -> None:
+    """What the head is stepped with is what it would be asked for afterwards, and the truth's own columns."""
+    truth = catapult.truth()
+    total, static, temperature, mach, alpha, beta, throttle = catapult.flow()
+    assert (total, static, temperature) == pytest.approx(catapult.air(catapult.t), rel=1e-12)
+    names = ("mach", "alpha", "beta", "throttle")
+    assert (mach, alpha, beta, throttle) == tuple(truth[name][-1] for name in names)

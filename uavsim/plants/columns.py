@@ -59,6 +59,7 @@ MOTION = itemgetter(*(INDEX[n] for n in ("north", "east", "altitude", "vn", "ve"
 ATTITUDE = itemgetter(*(INDEX[n] for n in ("roll", "pitch", "heading")))
 RATES = itemgetter(*(INDEX[n] for n in ("p", "q", "r")))
 CENTRE = itemgetter(*(INDEX[n] for n in ("cg_x", "cg_y", "cg_z")))
+FLOW = itemgetter(*(INDEX[n] for n in ("p_static", "temperature", "mach", "alpha", "beta", "throttle")))
 FELT = slice(INDEX["force_x"], INDEX["r_dot"] + 1)  # what the specific force is made of stands together in RAW
 OWN = ("catapult_force", "fx", "fy", "fz")  # N and m/s^2: what is recorded beside them, in SI already
 ROW = struct.Struct(f"{len(RAW) + len(OWN)}d")

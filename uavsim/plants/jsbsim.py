@@ -30,6 +30,7 @@ from uavsim.plants.columns import (
     ATTITUDE,
     CENTRE,
     FELT,
+    FLOW,
     FT,
     INCH,
     INDEX,
@@ -62,7 +63,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class JsbsimSettings:
-    """Everything that a JSBSim flight needs; `step_rate` in Hz, the seeds of its turbulence, the drawn launch."""
+    """Everything that a JSBSim flight needs: `step_rate` in Hz, the seed of its turbulence, the drawn launch.
+
+    `accelerometer_position` is from the aircraft's EYEPOINT, body axes forward-right-down, m.
+    """
 
     aircraft: AircraftSettings
     environment: EnvironmentSettings
@@ -72,6 +76,7 @@ class JsbsimSettings:
     force_factor: float = 1.0
     random_seed: int = 1
     step_rate: float = 1000.0
+    accelerometer_position: Vector = (0.0, 0.0, 0.0)
 
 
 class _Silence(FGLogger):
@@ -117,7 +122,7 @@ class JsbsimPlant:
         self._run: Callable[[], bool] = self._fdm.run
         self._nodes = [self._node(name) for name, _ in RAW.values()]
         self._commands = [self._node(name) for name in _COMMANDS]
-        self._eye = tuple(self._value(f"metrics/eyepoint-{axis}-in") for axis in "xyz")
+        self._eye = self._accelerometer()
         self._forces = [
             (self._node(f"external_reactions/{name}"), unit)
             for name, unit in (
@@ -223,6 +228,12 @@ class JsbsimPlant:
             if "W" not in access:
                 raise ValueError(f"{where} is read-only in JSBSim")
             self._set(name, value)
+
+    def _accelerometer(self) -> Vector:
+        """Place of the accelerometer in structural axes (x aft, y right, z up), inches."""
+        x, y, z = (self._value(f"metrics/eyepoint-{axis}-in") for axis in "xyz")
+        forward, right, down = self.settings.accelerometer_position
+        return x - forward / INCH, y + right / INCH, z - down / INCH
 
     def _rail(self) -> Rail:
         s = self.settings
@@ -384,6 +395,13 @@ class JsbsimPlant:
         static = (static0 + share * (static - static0)) * PSF
         total = airdata.isentropic_total(static, mach0 + share * (mach - mach0))
         return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
+
+    def flow(self) -> tuple[float, float, float, float, float, float, float]:
+        """Total and static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
+        static, temperature, mach, alpha, beta, throttle = FLOW(self.row)
+        static *= PSF
+        total = airdata.isentropic_total(static, mach)
+        return total, static, temperature * RANKINE, mach, alpha, beta, throttle
 
     @property
     def finite(self) -> bool:
