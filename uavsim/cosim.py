@@ -226,6 +226,8 @@ def believed_noise(scenario: Scenario) -> airspeed.NoiseModel:
         total_sd=belief.total_noise * total.noise_sd,
         static_sd=belief.static_noise * static.noise_sd,
         temperature_sd=belief.temperature * math.hypot(static.temperature_noise_sd, static.temperature_offset_sd),
+        total_tuned_sd=total.noise_sd,
+        static_tuned_sd=static.noise_sd,
     )
 
 

@@ -17,12 +17,20 @@ from hypothesis import strategies as st
 
 from uavsim import airdata
 from uavsim.onboard import airspeed
-from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel, PaperFilter, RandomWalk, steady_gain
+from uavsim.onboard.airspeed import (
+    EstimatorSettings,
+    NoiseModel,
+    PaperFilter,
+    RandomWalk,
+    process_noise,
+    steady_gain,
+)
 
 NAN, INF = math.nan, math.inf
 STATIC = 101_325.0  # Pa
 KELVIN = 288.15  # K
 QUIET = NoiseModel(total_sd=3.7, static_sd=3.7, temperature_sd=0.0)
+Q_TOTAL, Q_STATIC = 3.2 * 3.7**2, 0.09 / 0.7 * 3.7**2  # Pa², K²/(1 − K) R at gains of 0.8 and 0.3
 DENSITY = airdata.moist_air_density(pressure=STATIC, temperature=KELVIN, compressibility=1.0)
 
 
@@ -67,11 +75,24 @@ def test_filter_settles_at_the_steady_gain(gain, ratio):
     assert walk.value - before == pytest.approx(gain, abs=1e-6)
 
 
-def test_default_gains():
-    """The defaults are rounded to three digits."""
-    defaults = EstimatorSettings()
-    assert steady_gain(defaults.q_total, 3.7**2) == pytest.approx(0.8, abs=1e-4)
-    assert steady_gain(defaults.q_static, 3.7**2) == pytest.approx(0.3, abs=1e-4)
+@pytest.mark.parametrize("sd", [0.2, 3.7, 16.54])
+def test_default_gains_are_those_of_the_sensor_that_is_described(sd):
+    """0.8 and 0.3 whatever the part; doubted threefold the gain falls to the root of K²/(1 − K) = 3.2/9."""
+    q_total, q_static = process_noise(EstimatorSettings(), NoiseModel(sd, 2.0 * sd, 0.0))
+    assert steady_gain(q_total, sd**2) == pytest.approx(0.8, rel=1e-12)
+    assert steady_gain(q_static, (2.0 * sd) ** 2) == pytest.approx(0.3, rel=1e-12)
+    doubted = NoiseModel(3.0 * sd, 3.0 * sd, 0.0, total_tuned_sd=sd, static_tuned_sd=sd)
+    q_doubted, _ = process_noise(EstimatorSettings(), doubted)
+    assert q_doubted == pytest.approx(q_total, rel=1e-12)
+    assert steady_gain(q_doubted, 9.0 * sd**2) == pytest.approx(
+        (-3.2 + math.sqrt(3.2**2 + 36.0 * 3.2)) / 18.0, rel=1e-9
+    )
+
+
+def test_q_in_place_of_a_gain():
+    settings = EstimatorSettings(q_total=875.5, q_static=2.0)
+    assert process_noise(settings, NoiseModel(3.7, 3.7, 0.0)) == (875.5, 2.0)
+    assert process_noise(EstimatorSettings(), NoiseModel(0.0, 0.0, 0.0)) == (1.0, 1.0)  # the gain is 1 with any
 
 
 @pytest.mark.parametrize(("q", "r"), [(0.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (NAN, 1.0), (1.0, NAN)])
@@ -210,12 +231,12 @@ def test_airspeed_is_that_of_the_filtered_pressures(model):
     readings = [
         (total_at(5.0 + 0.1 * k) + generator.gauss(0.0, 3.7), STATIC + generator.gauss(0.0, 3.7)) for k in range(300)
     ]
-    total, static = RandomWalk(43.8, 3.7**2), RandomWalk(1.76, 3.7**2)
+    total, static = RandomWalk(Q_TOTAL, 3.7**2), RandomWalk(Q_STATIC, 3.7**2)
     for k, ((p_total, p_static), row) in enumerate(zip(readings, run(estimator, readings), strict=True), 1):
         total.add(p_total)
         static.add(p_static)
         t, speed, _, raw, filtered_total, filtered_static, *_ = row
-        assert (t, filtered_total, filtered_static) == (0.01 * k, total.value, static.value)
+        assert (t, filtered_total, filtered_static) == pytest.approx((0.01 * k, total.value, static.value), rel=1e-13)
         assert speed == pytest.approx(
             airdata.airspeed(total=total.value, static=static.value, temperature=KELVIN, **options), rel=1e-12
         )
@@ -396,7 +417,7 @@ def test_a_repeated_conversion_is_not_taken_again():
 def test_channels_convert_at_their_own_rates():
     """Static every poll, total every third: each is filtered over its own conversions."""
     estimator = PaperFilter(EstimatorSettings(), QUIET)
-    total, static = RandomWalk(43.8, 3.7**2), RandomWalk(1.76, 3.7**2)
+    total, static = RandomWalk(Q_TOTAL, 3.7**2), RandomWalk(Q_STATIC, 3.7**2)
     generator = random.Random(4)
     for k in range(1, 100):
         t = 0.01 * k
@@ -406,7 +427,7 @@ def test_channels_convert_at_their_own_rates():
         p_static = STATIC + generator.gauss(0.0, 3.7)
         static.add(p_static)
         row = estimator.step(t, p_total, p_static, KELVIN, t_total, t)
-        assert row[4:6] == (total.value, static.value)
+        assert row[4:6] == pytest.approx((total.value, static.value), rel=1e-13)
 
 
 @pytest.mark.parametrize("missing", [NAN, INF, 0.0, -5.0])
@@ -422,7 +443,7 @@ def test_a_missing_pressure_lets_the_variance_grow(missing):
     growth = np.diff(np.square(deviations))
     # Q a sample, at the slope 1/(ρ₀·V); the static channel stays settled.
     stagnation = DENSITY * (total_at(30.0) / STATIC) ** (1.0 / 1.4)
-    assert growth == pytest.approx(43.8 / (stagnation * 30.0) ** 2, rel=1e-4)
+    assert growth == pytest.approx(Q_TOTAL / (stagnation * 30.0) ** 2, rel=1e-4)
 
 
 def test_a_missing_temperature_keeps_the_last():

@@ -57,11 +57,12 @@ class EstimatorSettings:
         "paper", the published method; "paper-filterpy", the same through the filterpy package.
     model : str
         Relation of pressures and airspeed, "compressible" or "bernoulli".
-    q_total : float
-        Q, growth of the total pressure's variance from one sample to the next, Pa²; the default gives a steady gain of
-        0.8 for readings of 3.7 Pa standard deviation.
-    q_static : float
-        The same of the static pressure, Pa²; the default gives a gain of 0.3.
+    gain_total, gain_static : float
+        Steady gains of the two filters: Q is set so that a sensor of the noise that the part's description says gets
+        them. A quieter part of another description gets the same gain; what `[mismatch]` makes the filter believe does
+        change it.
+    q_total, q_static : float or None
+        Q itself, growth of the pressure's variance from one sample to the next, Pa², in place of the gain.
     wind_sd : float
         Standard deviation of the airspeed while nothing is measured, m/s: that of the wind.
     vapour_fraction : float
@@ -72,8 +73,10 @@ class EstimatorSettings:
 
     kind: Literal["paper", "paper-filterpy"] = "paper"
     model: airdata.Model = "compressible"
-    q_total: Annotated[float, Interval(gt=0.0, le=1e8)] = 43.8
-    q_static: Annotated[float, Interval(gt=0.0, le=1e8)] = 1.76
+    gain_total: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.8
+    gain_static: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.3
+    q_total: Annotated[float, Interval(gt=0.0, le=1e8)] | None = None
+    q_static: Annotated[float, Interval(gt=0.0, le=1e8)] | None = None
     wind_sd: Annotated[float, Interval(gt=0.0, le=100.0)] = 3.0
     vapour_fraction: Annotated[float, Interval(ge=0.0, le=0.2)] = 0.0
     calibration: Annotated[float, Interval(gt=0.0, le=10.0)] = 1.0
@@ -89,11 +92,33 @@ class NoiseModel:
         Of the two pressures, Pa.
     temperature_sd : float
         Of the temperature, K; its turn-on error included.
+    total_tuned_sd, static_tuned_sd : float or None
+        Those that the filters' gains were chosen for, Pa; None: the same as are believed.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
     static_sd: Annotated[float, Ge(0.0)]
     temperature_sd: Annotated[float, Ge(0.0)]
+    total_tuned_sd: Annotated[float, Ge(0.0)] | None = None
+    static_tuned_sd: Annotated[float, Ge(0.0)] | None = None
+
+
+def process_noise(settings: EstimatorSettings, noise: NoiseModel) -> tuple[float, float]:
+    """Return Q of the total and of the static pressure's filter, Pa²: K²/(1 − K) times the variance tuned for.
+
+    A sensor without noise leaves no choice: any Q makes the gain 1.
+    """
+    total = noise.total_sd if noise.total_tuned_sd is None else noise.total_tuned_sd
+    static = noise.static_sd if noise.static_tuned_sd is None else noise.static_tuned_sd
+    return (
+        settings.q_total or growth(settings.gain_total, total**2) or 1.0,
+        settings.q_static or growth(settings.gain_static, static**2) or 1.0,
+    )
+
+
+def growth(gain: float, r: float) -> float:
+    """Return Q for which a random walk's filter settles at `gain` on readings of variance `r`: K²/(1 − K) r."""
+    return gain * gain / (1.0 - gain) * r
 
 
 def steady_gain(q: Annotated[float, Gt(0.0)], r: Annotated[float, Ge(0.0)]) -> float:
@@ -250,10 +275,8 @@ class PaperFilter:
 
     @staticmethod
     def _channels(settings: EstimatorSettings, noise: NoiseModel) -> tuple[Channel, Channel]:
-        return (
-            RandomWalk(settings.q_total, noise.total_sd**2),
-            RandomWalk(settings.q_static, noise.static_sd**2),
-        )
+        q_total, q_static = process_noise(settings, noise)
+        return RandomWalk(q_total, noise.total_sd**2), RandomWalk(q_static, noise.static_sd**2)
 
     def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
@@ -345,9 +368,10 @@ class FilterpyFilter(PaperFilter):
         from filterpy.kalman import KalmanFilter
 
         both = KalmanFilter(dim_x=2, dim_z=1)
+        q_total, q_static = process_noise(settings, noise)
         return (
-            _FilterpyChannel(both, 0, settings.q_total, noise.total_sd**2),
-            _FilterpyChannel(both, 1, settings.q_static, noise.static_sd**2),
+            _FilterpyChannel(both, 0, q_total, noise.total_sd**2),
+            _FilterpyChannel(both, 1, q_static, noise.static_sd**2),
         )
 
 

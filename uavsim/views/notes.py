@@ -52,7 +52,7 @@ def _no_help(flight: "Flight") -> str:
     return (
         f"this filter cannot help here: the sensor's noise is {noise:.2f} Pa rms every {1e3 * interval:.1f} ms. A gain "
         f"of {PAPER_GAIN} would leave {noise * kept:.2f} Pa of it, and lag {lag:.1f} Pa behind the stroke's pressure "
-        f"rise of {slope:.0f} Pa/s; with this scenario's q_total the gain is {gain:.2f}."
+        f"rise of {slope:.0f} Pa/s; in this scenario the gain is {gain:.2f}."
     )
 
 
@@ -63,15 +63,16 @@ def _total_channel(flight: "Flight") -> tuple[float, float, float, float]:
     slope * interval * (1 - K) / K.
     """
     from uavsim.cosim import believed_noise
-    from uavsim.onboard.airspeed import steady_gain
+    from uavsim.onboard.airspeed import process_noise, steady_gain
     from uavsim.scenario import Scenario
 
     scenario = Scenario.from_dict(flight.scenario)
-    noise = believed_noise(scenario).total_sd
+    believed = believed_noise(scenario)
+    noise = believed.total_sd
     stroke = flight.truth[flight.truth["phase"] == "stroke"]
     slope = float(np.max(np.gradient(stroke["p_total"].to_numpy(), stroke["t"].to_numpy()))) if len(stroke) > 1 else 0.0
     interval = float(np.median(np.diff(np.unique(flight.air_data["t_total"].dropna().to_numpy()))))
-    return noise, steady_gain(scenario.estimator.q_total, noise**2), slope, interval
+    return noise, steady_gain(process_noise(scenario.estimator, believed)[0], noise**2), slope, interval
 
 
 def _single_flight(flight: "Flight") -> str:
