@@ -17,10 +17,10 @@ in the local variables of a coroutine (attributes would cost twice as much).
 """
 
 from collections.abc import Callable, Generator
-from math import expm1, pi
 
 from sensors.accelerometer_description import AccelerometerDescription
 from sensors.clock import Clock
+from sensors.filters import one_pole
 from sensors.noise import constant, gauss_markov, random_walk, rows, white
 from sensors.streams import Streams
 from sensors.unit import ROUND, Triple, Unit, draw_error
@@ -148,15 +148,3 @@ class Accelerometer:
         generator = streams(f"{name}.scale")
         x, y, z = (draw_error(generator, d.scale_sd, d.scale_limit, unit) for _ in range(3))
         self.scale_error = (x, y, z)
-
-
-def one_pole(bandwidth: float, dt: float) -> Triple:
-    """Return (a, b0, b1) of y_k = a y_{k-1} + b0 u_{k-1} + b1 u_k, a first-order low-pass of `bandwidth` Hz.
-
-    Exact for an input that is linear between the steps (first-order hold): with ω = 2π f and a = e^{-ω dt},
-    b1 = 1 - (1 - a)/(ω dt) and b0 = (1 - a)/(ω dt) - a.
-    """
-    omega_dt = 2.0 * pi * bandwidth * dt
-    passed = -expm1(-omega_dt)
-    mean = passed / omega_dt
-    return 1.0 - passed, mean - (1.0 - passed), 1.0 - mean

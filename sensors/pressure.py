@@ -18,6 +18,7 @@ from collections.abc import Callable
 from math import nan
 
 from sensors.clock import Clock
+from sensors.filters import DigitalFilter
 from sensors.noise import constant, gauss_markov, random_walk, values, white
 from sensors.pressure_description import PressureDescription
 from sensors.streams import Streams
@@ -25,28 +26,6 @@ from sensors.unit import Unit, draw_error, quantise
 
 Conversion = tuple[float, float, float]  # pressure Pa, temperature K, end of conversion s
 Truth = Callable[[float], tuple[float, float]]  # time s -> pressure at the port Pa, temperature K
-
-
-class DigitalFilter:
-    """The filter y += a (x - y) that begins with its first input.
-
-    Parameters
-    ----------
-    weight : float
-        a, above 0 and at most 1; 1 passes everything.
-    """
-
-    __slots__ = ("_output", "_weight")
-
-    def __init__(self, weight: float) -> None:
-        self._weight = weight
-        self._output: float | None = None
-
-    def step(self, x: float) -> float:
-        """Take in one value and return the filtered one."""
-        before = self._output
-        self._output = y = x if before is None or self._weight == 1.0 else before + self._weight * (x - before)
-        return y
 
 
 class PressureSensor:
