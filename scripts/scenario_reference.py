@@ -9,12 +9,12 @@ code; a test compares it with the file. Run it after a setting has changed:
 import re
 import types
 from collections.abc import Iterator
-from dataclasses import is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from inspect import cleandoc, getdoc
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from uavsim.scenario import Requirement, Scenario
+from uavsim.scenario import Scenario
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "scenario.md"
 
@@ -49,7 +49,11 @@ This page is written by `scripts/scenario_reference.py` from the settings' own d
 
 def page() -> str:
     """Return the whole page."""
-    return cleandoc(INTRODUCTION) + "\n" + "".join(_group(name, kind) for name, kind in _groups()) + _requirements()
+    groups = "".join(
+        _group(f"`[{name.rstrip('.')}]`" if name else "At the top", name, kind) for name, kind in _groups()
+    )
+    lists = "".join(_group(", ".join(names), "", kind) for kind, names in _lists().items())
+    return cleandoc(INTRODUCTION) + "\n" + groups + lists
 
 
 def _groups(kind: type = Scenario, prefix: str = "") -> Iterator[tuple[str, type]]:
@@ -59,11 +63,26 @@ def _groups(kind: type = Scenario, prefix: str = "") -> Iterator[tuple[str, type
             yield from _groups(hint, f"{prefix}{name}.")  # type: ignore[arg-type]  # a class, not an instance
 
 
-def _group(prefix: str, kind: type) -> str:
+def _lists() -> dict[type, list[str]]:
+    """Kinds of groups that come in lists, and where: `[[accelerometer.faults]]`."""
+    found: dict[type, list[str]] = {}
+    for prefix, kind in _groups():
+        for name, hint in get_type_hints(kind).items():
+            if _entry(hint) is not None:
+                found.setdefault(_entry(hint), []).append(f"`[[{prefix}{name}]]`")
+    return found
+
+
+def _entry(hint: Any) -> Any:
+    """Kind of the groups in a list, if it is one of groups."""
+    members = get_args(hint) if get_origin(hint) is tuple else ()
+    return members[0] if members and is_dataclass(members[0]) else None
+
+
+def _group(title: str, prefix: str, kind: type) -> str:
     rows = list(_rows(prefix, kind))
     if not rows:
         return ""
-    title = f"`[{prefix.rstrip('.')}]`" if prefix else "At the top"
     summary = (getdoc(kind) or "").split("\n")[0]
     table = "\n".join(rows)
     return f"\n## {title}\n{summary}\n\n| key | default | allowed | meaning |\n|---|---|---|---|\n{table}\n"
@@ -71,19 +90,35 @@ def _group(prefix: str, kind: type) -> str:
 
 def _rows(prefix: str, kind: type) -> Iterator[str]:
     meanings = dict(_meanings(kind))
-    for name, hint in get_type_hints(kind, include_extras=True).items():
-        if is_dataclass(hint) or name == "requirements":
+    hints = get_type_hints(kind, include_extras=True)
+    for setting in fields(kind):  # type: ignore[arg-type]  # a class of settings
+        hint = hints[setting.name]
+        if is_dataclass(hint):
             continue
-        default = getattr(kind(), name)
-        shown = "the part's own" if default is None and prefix != "detector." else _shown(default)
-        yield f"| `{prefix}{name}` | {shown} | {_allowed(hint)} | {meanings.get(name, '')} |"
+        shown = _default(f"{prefix}{setting.name}", setting)
+        yield f"| `{prefix}{setting.name}` | {shown} | {_allowed(hint)} | {meanings.get(setting.name, '')} |"
 
 
-def _requirements() -> str:
-    meaning = " ".join((getdoc(Requirement) or "").split())
-    return (
-        f"\n## `[[requirements]]`\n{meaning} Each has the keys `key`, `minimum`, `maximum`; see [score.md](score.md).\n"
-    )
+def _default(key: str, setting: "Field[Any]") -> str:
+    if setting.default_factory is not MISSING:
+        return _shown(setting.default_factory())
+    if setting.default is MISSING:
+        return "must be given"
+    if setting.default is None:
+        group, _, name = key.rpartition(".")
+        return _NONE.get(key, _NONE.get(group, _NONE.get(name, "the part's own")))
+    return _shown(setting.default)
+
+
+# What a default of nothing stands for, by key, group or name; else it is the part's own.
+_NONE = {
+    "detector": "as `threshold`",
+    "estimator": "by the gain",
+    "normal": "by port",
+    "direction": "by port",
+    "minimum": "none",
+    "maximum": "none",
+}
 
 
 def _meanings(kind: type) -> Iterator[tuple[str, str]]:
@@ -96,14 +131,12 @@ def _meanings(kind: type) -> Iterator[tuple[str, str]]:
 
 
 def _shown(value: Any) -> str:
-    if value is None:
-        return "as `threshold`"
+    if value in ((), {}):
+        return "none"
     if isinstance(value, tuple):
         return "`[" + ", ".join(f'"{v}"' if isinstance(v, str) else f"{v:g}" for v in value) + "]`"
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
-    if isinstance(value, dict):
-        return "none"
     return f'`"{value}"`' if isinstance(value, str) else f"`{value:g}`"
 
 
@@ -128,6 +161,8 @@ def _allowed(hint: Any) -> str:
         return " or ".join(filter(None, map(_allowed, get_args(hint))))
     if origin is tuple:
         members = [m for m in get_args(hint) if m is not Ellipsis]
+        if is_dataclass(members[0]):
+            return "list of groups, below"
         return f"list of {_allowed(members[0])}" if len(members) == 1 else f"list of {len(members)} numbers"
     return "JSBSim property = number" if origin is dict else _WORDS[hint]
 

@@ -321,7 +321,9 @@ class TotalPortSettings:
     slipstream : float
         Dynamic pressure at full throttle over the free one, less one: the part of the propeller's wake it stands in.
     tube : group
+        From the port to its sensor.
     faults : list of groups
+        What becomes of the port.
     """
 
     probe: Literal["ideal", "plain", "bevelled", "kiel"] = "ideal"
@@ -340,14 +342,18 @@ class StaticPortSettings:
         c0.
     error_alpha : float
         cα, 1/rad.
-    error_alpha2, error_beta2 : float
-        cαα and cββ, 1/rad².
+    error_alpha2 : float
+        cαα, 1/rad².
+    error_beta2 : float
+        cββ, 1/rad².
     error_mach2 : float
         cM.
     slipstream : float
         Dynamic pressure at full throttle over the free one, less one: the part of the propeller's wake it stands in.
     tube : group
+        From the port to its sensor.
     faults : list of groups
+        What becomes of the port.
     """
 
     error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.0

@@ -40,7 +40,15 @@ LARGEST_FILE = 1_000_000  # bytes; the largest packaged scenario has a thousandt
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A bound on a number of the score (its keys joined by dots): `minimum` ≤ value ≤ `maximum`; null meets none."""
+    """A bound on a number of the score, `minimum` ≤ value ≤ `maximum`; see [score.md](score.md).
+
+    Attributes
+    ----------
+    key
+        Of the score, joined by dots; null meets no bound.
+    minimum, maximum
+        Bounds, in the number's own unit.
+    """
 
     key: str
     minimum: float | None = None
