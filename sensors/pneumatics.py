@@ -52,7 +52,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sensors.settings import PortFault, TubeSettings
-from sensors.unit import Triple
+from sensors.unit import Triple, unit_vector
 
 GAMMA = 1.4  # –, ratio of specific heats of air (ISO 2533)
 GAS_CONSTANT = 287.05287  # J/(kg K), of dry air (ISO 2533)
@@ -392,12 +392,3 @@ def _condition(faults: tuple[PortFault, ...], t: float) -> tuple[float, float, f
             else:
                 plug += fault.water_length
     return opening, leak, plug
-
-
-def unit_vector(vector: Triple, what: str) -> Triple:
-    """Return `vector` with length 1; ValueError that names `what` if it has none."""
-    x, y, z = vector
-    length = sqrt(x * x + y * y + z * z)
-    if not 0.0 < length < inf:
-        raise ValueError(f"{what} must be a finite vector other than zero, not {vector!r}")
-    return x / length, y / length, z / length

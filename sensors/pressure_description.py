@@ -242,7 +242,7 @@ class PressureDescription:
     @property
     def temperature_white_sd(self) -> float:
         """The same of the thermometer, K."""
-        return _without_quantisation(self.mode.temperature_noise_sd * self.noise_scale, self.temperature_resolution)
+        return _without_quantisation(self.mode.temperature_noise_sd * self.noise_scale, self.temperature_step)
 
     @property
     def bandwidth(self) -> float:

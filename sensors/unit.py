@@ -4,7 +4,7 @@ A datasheet says how far units of a part spread; a unit is one draw of it. Typic
 deviation where the document says nothing else, guaranteed limits as bounds that no unit sold exceeds.
 """
 
-from math import inf
+from math import inf, sqrt
 from typing import Annotated, Literal
 
 import numpy as np
@@ -56,3 +56,12 @@ def clip(value: float, low: float = -inf, high: float = inf) -> float:
     if value < low:
         return low
     return high if value > high else value
+
+
+def unit_vector(vector: Triple, what: str) -> Triple:
+    """Return `vector` with length 1; ValueError that names `what` if it has none."""
+    x, y, z = vector
+    length = sqrt(x * x + y * y + z * z)
+    if not 0.0 < length < inf:
+        raise ValueError(f"{what} must be a finite vector other than zero, not {vector!r}")
+    return x / length, y / length, z / length

@@ -20,10 +20,10 @@ from sensors.pneumatics import (
     bergh_tijdeman,
     laminar_lag,
     second_order,
-    unit_vector,
     viscosity,
 )
 from sensors.settings import PortFault, TubeSettings
+from sensors.unit import unit_vector
 
 SEA_LEVEL = {"pressure": 101_325.0, "temperature": 288.15}
 AFT = (-1.0, 0.0, 0.0)
