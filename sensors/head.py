@@ -1,53 +1,87 @@
 """The air-data head: a total and a static pressure sensor, polled by one bus.
 
-        cover            port               sensor, own clock           bus, every 1/rate
-    p_t ──╂── p_t or p_s ───── total  ──── conversion, last finished ──┐
-    p_s ─────────────────┬──── static ──── conversion, last finished ──┴── (t, p_total, p_static, T, t_total, t_static)
-                         └ thermometer
+        cover  port              tube    membrane    sensor, own clock        bus, every 1/rate
+    p_t ──╂─── probe ─────────── line ── + n·f ───── total ── conversion ──┐
+    p_s ──╂─┬─ position error ── line ── + n·f ───── static ─ conversion ──┴── (t, p_total, p_static, T, t_total,
+            └─ bay                                   thermometer                t_static)
 
 The sensors run freely, so the two values of a row are of different instants and as old as their clocks make them:
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
 cover both ports feel the static pressure, wind or not.
+
+There are two ways to ask for the truth. With nothing between the air and two sensors that do not feel acceleration, a
+conversion takes the truth at the middle of its window, and only conversions that are polled ask for it (`full` is
+false). Otherwise the head must be told of each plant step (`feel`): ports, tubes and membranes are followed, and a
+conversion is the mean over its window of what is felt, linear between plant steps and integrated exactly,
+
+    z = 1/T ∫ p dt = 1/(x₁ - x₀) [Σ' p_i + F(x₁) - F(x₀)],   F(i + w) = w p_i + w²/2 (p_{i+1} - p_i)
+
+with x in steps and Σ' the trapezoidal sum between whole steps: vibration on the membrane averages as it does in the
+part, and a pressure that is no number spoils the windows it is in and no others.
 """
 
 from collections.abc import Callable
-from math import inf
+from dataclasses import replace
+from math import inf, nan
 
 from sensors.clock import Clock
+from sensors.pneumatics import Line
 from sensors.pressure import PressureSensor
-from sensors.settings import AirDataSettings
+from sensors.probe import static_port, total_port
+from sensors.settings import AirDataSettings, PortFault, PressureSettings, ThermalSettings, TubeSettings
 from sensors.streams import Streams
-from sensors.unit import Unit
+from sensors.unit import Triple, Unit
 
-Air = tuple[float, float, float]  # true total and static pressure, Pa, and temperature, K
+Air = tuple[float, float, float]
+"""True total and static pressure, Pa, and temperature, K."""
+Flow = tuple[float, float, float, float, float, float, float, float, float, float]
+"""True total and static pressure, Pa, temperature, K, Mach number, angle of attack and sideslip, rad, throttle 0 … 1,
+and specific force x, y, z at the head, vibration included, body axes, m/s²."""
 Row = tuple[float, float, float, float, float, float]
+
+AFT, DOWN = (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)  # tubes from the total and the static port to their sensors
+FORWARD = (1.0, 0.0, 0.0)  # normal of the total sensor's membrane; DOWN is the static sensor's (the published head)
+MOST_REMEMBERED = 4096  # steps: conversions are made at the latest when so many wait for a poll
 
 
 class AirDataHead:
-    """Two drawn units and the bus, stepped with the plant when something is due.
+    """Two drawn units and the bus, stepped with the plant.
 
     Parameters
     ----------
     settings : AirDataSettings
     streams : Streams
         Streams "{name}.total. …", "{name}.static. …" and "{name}.poll" are used.
+    dt : float
+        Step of the plant, s; meets `feel` only.
     covered_until : float
         When the cover is taken off, s; -inf if it never was on.
-    unit : {"random", "typical", "ideal"}
-        Turn-on errors of both sensors, as of `PressureSensor`.
+    unit : {"random", "typical", "ideal"}, optional
+        Turn-on errors of both sensors, as of `PressureSensor`, in place of their own settings'.
     name : str
         Prefix of its streams, for a second one.
 
     Attributes
     ----------
+    full : bool
+        Whether `feel` must be called each plant step.
     due : float
         Time of the next poll, s.
     total, static : PressureSensor
     covered_until : float
         May be set during a flight.
+
+    Raises
+    ------
+    ValueError
+        If a membrane's normal or a tube's direction has no length.
     """
 
-    __slots__ = ("_air", "_poll", "covered_until", "due", "static", "total")
+    __slots__ = (
+        "_air", "_dt", "_lines", "_membranes", "_open", "_poll", "_settings", "_static_error", "_static_felt",
+        "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt", "_total_truth",
+        "covered_until", "due", "full", "static", "total",
+    )  # fmt: skip
 
     _air: Callable[[float], Air]
 
@@ -56,25 +90,49 @@ class AirDataHead:
         settings: AirDataSettings,
         streams: Streams,
         *,
+        dt: float = 1e-3,
         covered_until: float = -inf,
-        unit: Unit = "random",
+        unit: Unit | None = None,
         name: str = "air_data",
     ) -> None:
-        self.total = PressureSensor(
-            settings.total.description(), streams, name=f"{name}.total", offset_pa=settings.total.offset_pa, unit=unit
-        )
-        self.static = PressureSensor(
-            settings.static.description(),
-            streams,
-            name=f"{name}.static",
-            offset_pa=settings.static.offset_pa,
-            unit=unit,
-        )
+        self._settings = settings
+        self.total = _sensor(settings.total, FORWARD, settings.thermal, streams, unit, f"{name}.total")
+        self.static = _sensor(settings.static, DOWN, settings.thermal, streams, unit, f"{name}.static")
         self.covered_until = covered_until
         self._poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
         self.due = self._poll.due
 
-    def step(self, until: float, air: Callable[[float], Air]) -> list[Row]:
+        self._dt, self._steps_per_second = dt, 1.0 / dt
+        self._total_error, self._static_error = total_port(settings.total_port), static_port(settings.static_port)
+        self._total_felt: list[float] = []
+        self._static_felt: list[float] = []
+        self._t = self._temperature = nan
+        self._lines: tuple[Line | None, Line | None] | None = self._connect(nan, nan)  # checks the directions, too
+        self._open = (self._total_error, self._static_error, *self._lines) == (None,) * 4
+        self._membranes = (*self.total.acceleration, *self.static.acceleration)
+        self.full = not self._open or any(self._membranes)
+        self._total_truth = self._mean_of_total if self.full else self._total_port
+        self._static_truth = self._mean_of_static if self.full else self._static_port
+        self._lines = None
+
+    def feel(self, t: float, flow: Flow) -> None:
+        """Take in flow and specific force at plant time `t`, s: each step, and before `step`.
+
+        What comes first is taken to have been there before, and tubes are made for its air.
+        """
+        total, static, self._temperature, _, _, _, _, fx, fy, fz = flow
+        self._t = t
+        if not self._open or t < self.covered_until:
+            total, static = self._behind(t, flow)
+        tx, ty, tz, sx, sy, sz = self._membranes
+        felt = self._total_felt
+        felt.append(total + tx * fx + ty * fy + tz * fz)
+        self._static_felt.append(static + sx * fx + sy * fy + sz * fz)
+        if len(felt) > MOST_REMEMBERED and t < self.due:
+            self.total.read(t, self._total_truth)
+            self.static.read(t, self._static_truth)
+
+    def step(self, until: float, air: Callable[[float], Air] | None = None) -> list[Row]:
         """Return the rows polled up to plant time `until`.
 
         Parameters
@@ -83,7 +141,7 @@ class AirDataHead:
             The present plant time, s.
         air : callable
             Gives the true (total pressure Pa, static pressure Pa, temperature K) at any time since the last poll; asked
-            only at the middle of a conversion that is read.
+            only at the middle of a conversion that is read, and not at all by a head that is `full`.
 
         Returns
         -------
@@ -91,16 +149,21 @@ class AirDataHead:
             (t, p_total, p_static, temperature, t_total, t_static): s, Pa, Pa, K, s, s. NaN before a sensor's first
             finished conversion. The temperature is the static sensor's.
         """
-        self._air = air
+        if air is not None:
+            self._air = air
+            if not self._total_felt:  # nobody tells it of the flow
+                self._total_truth, self._static_truth = self._total_port, self._static_port
         rows: list[Row] = []
         while self.due <= until:
             t = self.due
-            p_total, _, t_total = self.total.read(t, self._total_port)
-            p_static, temperature, t_static = self.static.read(t, self._static_port)
+            p_total, _, t_total = self.total.read(t, self._total_truth)
+            p_static, temperature, t_static = self.static.read(t, self._static_truth)
             rows.append((t, p_total, p_static, temperature, t_total, t_static))
             self._poll.tick()
             self.due = self._poll.due
         return rows
+
+    # -- the truth of a conversion -----------------------------------------------------------------------------------
 
     def _total_port(self, t: float) -> tuple[float, float]:
         p_total, p_static, temperature = self._air(t)
@@ -109,6 +172,83 @@ class AirDataHead:
     def _static_port(self, t: float) -> tuple[float, float]:
         _, p_static, temperature = self._air(t)
         return p_static, temperature
+
+    def _mean_of_total(self, middle: float) -> tuple[float, float]:
+        return self._mean(self._total_felt, middle, self.total.half_window), self._temperature
+
+    def _mean_of_static(self, middle: float) -> tuple[float, float]:
+        return self._mean(self._static_felt, middle, self.static.half_window), self._temperature
+
+    def _mean(self, felt: list[float], middle: float, half: float) -> float:
+        """Return the mean of what was felt from `middle` - `half` to `middle` + `half`; forget what was before."""
+        if not felt:
+            return nan
+        newest = len(felt) - 1
+        end = newest + (middle + half - self._t) * self._steps_per_second
+        start = end - 2.0 * half * self._steps_per_second
+        if start < 0.0:  # at the beginning of a record
+            felt[:0] = [felt[0]] * (1 + int(-start))
+            return self._mean(felt, middle, half)
+        i, j = int(start), min(int(end), newest - 1)
+        v, w = start - i, end - j
+        whole = sum(felt[i : j + 1]) - 0.5 * (felt[i] + felt[j])
+        last = w * (felt[j] + 0.5 * w * (felt[j + 1] - felt[j]))
+        first = v * (felt[i] + 0.5 * v * (felt[i + 1] - felt[i]))
+        del felt[:i]
+        return (whole + last - first) / (end - start)
+
+    # -- between the air and the sensors -----------------------------------------------------------------------------
+
+    def _behind(self, t: float, flow: Flow) -> tuple[float, float]:
+        """Return the pressures at the two sensors."""
+        p_total, p_static, temperature, mach, alpha, beta, throttle, fx, fy, fz = flow
+        total, static = p_total, p_static
+        if t < self.covered_until:
+            total = p_static
+        else:
+            if self._total_error is not None:
+                total = self._total_error(p_total, p_static, mach, alpha, beta, throttle)
+            if self._static_error is not None:
+                static = self._static_error(p_total, p_static, mach, alpha, beta, throttle)
+        if self._lines is None:
+            self._lines = self._connect(p_static, temperature)
+        total_line, static_line = self._lines
+        force = (fx, fy, fz)
+        if total_line is not None:
+            total = total_line.step(t, total, p_static, temperature, force)
+        if static_line is not None:
+            static = static_line.step(t, static, p_static, temperature, force)
+        return total, static
+
+    def _connect(self, pressure: float, temperature: float) -> tuple[Line | None, Line | None]:
+        s = self._settings
+
+        def line(tube: TubeSettings, direction: Triple, faults: tuple[PortFault, ...]) -> Line | None:
+            tube = replace(tube, length=s.pipe) if s.pipe > 0.0 else tube
+            if tube.length == 0.0 and not faults:
+                return None
+            return Line(tube, direction, faults, self._dt, pressure=pressure, temperature=temperature)
+
+        return (
+            line(s.total_port.tube, AFT, s.total_port.faults),
+            line(s.static_port.tube, DOWN, s.static_port.faults),
+        )
+
+
+def _sensor(
+    settings: PressureSettings, normal: Triple, thermal: ThermalSettings, streams: Streams, unit: Unit | None, name: str
+) -> PressureSensor:
+    return PressureSensor(
+        settings.description(),
+        streams,
+        name=name,
+        offset_pa=settings.offset_pa,
+        unit=settings.unit if unit is None else unit,
+        normal=normal if settings.normal is None else settings.normal,
+        rate_error_percent=settings.rate_error_percent,
+        thermal=thermal,
+        faults=settings.faults,
+    )
 
 
 def head_noise(settings: AirDataSettings) -> tuple[float, float, float]:

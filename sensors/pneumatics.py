@@ -269,8 +269,8 @@ class Line:
     """
 
     __slots__ = (
-        "_air", "_bay", "_dt", "_end", "_faults", "_gx", "_gy", "_gz", "_hole", "_lag", "_last", "_plug",
-        "_shut", "_tube", "_unit", "diameter", "length", "volume",
+        "_air", "_bay", "_condition", "_dt", "_end", "_faults", "_gx", "_gy", "_gz", "_hole", "_lag", "_last", "_plug",
+        "_shut", "_tube", "_unit", "_until", "diameter", "length", "volume",
     )  # fmt: skip
 
     def __init__(
@@ -297,6 +297,8 @@ class Line:
             shape = {"length": self.length, "diameter": self.diameter, "volume": self.volume}
             self._hole += laminar_lag(**shape, **self._air, polytropic=GAMMA)
         self._tube = SecondOrder(*self._lag, dt) if self._lag[1] > 0.0 else None
+        self._condition = (1.0, 0.0, 0.0)
+        self._until = -inf
         self._plug = 0.0
         self._shut = False
         self._last = self._end = self._bay = nan
@@ -316,13 +318,17 @@ class Line:
             Specific force, body axes, m/s².
         """
         fx, fy, fz = force
-        inlet = port + port * (self._gx * fx + self._gy * fy + self._gz * fz) / temperature
+        weight = port * (self._gx * fx + self._gy * fy + self._gz * fz)
+        inlet = port + (weight / temperature if temperature else nan)
         if self._faults:
             return self._faulty(t, inlet, bay, force)
         return self._tube.step(inlet) if self._tube is not None else inlet
 
     def _faulty(self, t: float, inlet: float, bay: float, force: Triple) -> float:
-        opening, leak, plug = _condition(self._faults, t)
+        if t >= self._until:
+            self._condition = condition(self._faults, t)
+            self._until = steady_until(self._faults, t)
+        opening, leak, plug = self._condition
         if plug != self._plug:
             self._flood(plug)
         if plug:
@@ -377,7 +383,7 @@ class Line:
         return second_order(length=self.length, diameter=self.diameter, volume=self.volume, **self._air)
 
 
-def _condition(faults: tuple[PortFault, ...], t: float) -> tuple[float, float, float]:
+def condition(faults: tuple[PortFault, ...], t: float) -> tuple[float, float, float]:
     """Return how far a port is open, the rate at which its leaks fill it, 1/s, and the length of water in it, m."""
     opening, leak, plug = 1.0, 0.0, 0.0
     for fault in faults:
@@ -392,3 +398,11 @@ def _condition(faults: tuple[PortFault, ...], t: float) -> tuple[float, float, f
             else:
                 plug += fault.water_length
     return opening, leak, plug
+
+
+def steady_until(faults: tuple[PortFault, ...], t: float) -> float:
+    """Return the time up to which the condition is that of time `t`, s; ice that is growing changes it always."""
+    if any(f.kind == "ice" and f.start <= t < min(f.start + f.duration, f.stop) for f in faults):
+        return t
+    edges = [edge for f in faults for edge in (f.start, f.start + f.duration, f.stop) if edge > t]
+    return min(edges, default=inf)

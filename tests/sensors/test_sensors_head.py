@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from sensors import AirDataHead, AirDataSettings, PressureSettings, Streams
+from sensors.settings import ThermalSettings
 
 DT = 1e-3
 QUIET = AirDataSettings(
+    thermal=ThermalSettings(lag=1e-9),  # a die as warm as the air
     total=PressureSettings(preset="bmp581", mode="x1/x1", noise_scale=0.0),
     static=PressureSettings(preset="bmp581", mode="x1/x1", noise_scale=0.0),
 )
