@@ -109,7 +109,8 @@ class AirDataHead:
         self._t = self._temperature = nan
         self._lines: tuple[Line | None, Line | None] | None = self._connect(nan, nan)  # checks the directions, too
         self._open = (self._total_error, self._static_error, *self._lines) == (None,) * 4
-        self._membranes = (*self.total.acceleration, *self.static.acceleration)
+        felt = settings.acceleration_sensitivity
+        self._membranes = (*self.total.acceleration, *self.static.acceleration) if felt else (0.0,) * 6
         self.full = not self._open or any(self._membranes)
         self._total_truth = self._mean_of_total if self.full else self._total_port
         self._static_truth = self._mean_of_static if self.full else self._static_port

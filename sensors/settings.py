@@ -377,6 +377,8 @@ class AirDataSettings:
         What is between the air and the two sensors.
     pipe : float
         Length of the metal pipes before both sensors, m, in place of the ports' own tubes; the published head has 0.05.
+    acceleration_sensitivity : bool
+        Whether the membranes feel acceleration, as the presets say: an assumption, as no datasheet does.
     thermal : group
         Temperature of the dies, which the thermometer reads.
     rate : float
@@ -398,4 +400,5 @@ class AirDataSettings:
     total_port: TotalPortSettings = field(default_factory=TotalPortSettings)
     static_port: StaticPortSettings = field(default_factory=StaticPortSettings)
     pipe: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.0
+    acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)

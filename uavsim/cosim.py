@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
+from sensors.mounting import attitude, linear
 from uavsim import __version__
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
@@ -106,8 +107,19 @@ class Onboard:
             airspeed.build(scenario.estimator, believed_noise(scenario), tare),
             rate,
         )
-        self.accelerometer = self.computer.accelerometer
+        self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
         self.estimates: list[Estimate] = []
+
+    def _aligned(self, mounting_deg: tuple[float, float, float]) -> Callable[[float, float, float, float], None]:
+        """Return what takes a reading, turned from the case's axes as they are known into the body's."""
+        take, turn = self.computer.accelerometer, linear(attitude(*mounting_deg))
+        if turn is None:
+            return take
+
+        def turned(t: float, fx: float, fy: float, fz: float) -> None:
+            take(t, *turn(fx, fy, fz))
+
+        return turned
 
     def air_data(self, reading: AirReading) -> None:
         """Take one reading of the head."""
@@ -154,28 +166,31 @@ class Cosimulation:
             rise=scenario.launcher.rise,
             scale=scenario.accelerometer.vibration_scale,
         )
-        self.accelerometer = Accelerometer(
-            scenario.accelerometer.description(),
-            streams,
-            dt=1.0 / STEP_RATE,
-            bias=scenario.accelerometer.bias,
-            vibration=self.vibration,
-        )
         air = scenario.air_data
         self.head = AirDataHead(
-            air, streams, covered_until=release - air.cover_off if air.tare == "covered" else -math.inf
+            air,
+            streams,
+            dt=1.0 / STEP_RATE,
+            covered_until=release - air.cover_off if air.tare == "covered" else -math.inf,
+        )
+        self.accelerometer = Accelerometer.from_settings(
+            scenario.accelerometer,
+            streams,
+            dt=1.0 / STEP_RATE,
+            vibration=None if self.head.full else self.vibration,
+            air_temperature=self.plant.air_temperature,
         )
         self.onboard = Onboard(scenario, release)
         self.readings: list[float] = []  # flat: plain floats cost the collector nothing
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
         self.ended = ""
-        self.accelerometer.step((0.0, self.plant.force))
+        self._feel()
 
     def advance(self, steps: int) -> None:
         """Fly up to `steps` plant steps; `ended` tells why it stopped early."""
-        plant, onboard, head, accelerometer = self.plant, self.onboard, self.head, self.accelerometer
-        step, feel = plant.step, accelerometer.step
+        plant, onboard, head = self.plant, self.onboard, self.head
+        step, feel, feel_all = plant.step, self.accelerometer.step, self._feel if head.full else None
         keep, take, computer = self.readings.extend, onboard.accelerometer, onboard.computer
         on_rail = plant.on_rail
         for _ in range(min(steps, self.steps - plant.k)):
@@ -185,7 +200,7 @@ class Cosimulation:
             if not plant.aloft:
                 self.ended = "crashed" if plant.finite else "diverged"
                 return
-            readings = feel((t, plant.force))
+            readings = feel((t, plant.force)) if feel_all is None else feel_all()
             air = head.step(t, plant.air) if head.due <= t else []
             for reading in readings:
                 if air and air[0][0] < reading[0]:
@@ -201,6 +216,16 @@ class Cosimulation:
                 self.vibration.leave_rail(t)
         if plant.k >= self.steps:
             self.ended = "completed" if plant.finite else "diverged"
+
+    def _feel(self) -> tuple[Reading, ...]:
+        """Let the accelerometer feel this plant step, and a head that follows each; return the readings."""
+        plant = self.plant
+        if not self.head.full:
+            return self.accelerometer.step((plant.t, plant.force))
+        (fx, fy, fz), (vx, vy, vz) = plant.force, self.vibration.step()
+        felt = fx + vx, fy + vy, fz + vz
+        self.head.feel(plant.t, (*plant.flow(), *felt))
+        return self.accelerometer.step((plant.t, felt))
 
     def _take_air(self, rows: list[AirReading], until: float) -> list[AirReading]:
         """Hand on the rows with a time stamp before `until`; return the rest."""
