@@ -1,16 +1,20 @@
 """The parts that are shipped: one TOML file each in `datasheets/`, read into a description.
 
 A file holds the numbers in the datasheet's own units (µg/√Hz, mg, %) and, for each, where it was read, how the document
-words it (typ, max) and how that is mapped to one standard deviation. A key that is not known, a number without its
-source or a source without its number is an error.
+words it (typ, max) and how that is mapped to one standard deviation. It is data and nothing else: what is not as it
+should be (`sensors.datasheet_check`) is refused when it is read, in one line that names file and key. A user's own file
+is read by the same code.
 """
 
+import os
 import tomllib
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from sensors.accelerometer_description import AccelerometerDescription
 from sensors.choice import choose
+from sensors.datasheet_check import check
 from sensors.pressure_description import PressureDescription, PressureMode
 from sensors.unit import G0, Triple
 
@@ -21,26 +25,6 @@ FOLDER = Path(__file__).parent / "datasheets"
 UG = 1e-6 * G0  # µg, m/s²
 MG = 1e-3 * G0  # mg, m/s²
 
-TOP_KEYS = ("kind", "part", "document", "values", "modes", "sources")
-KINDS = ("accelerometer", "pressure")
-ACCELEROMETER_KEYS = (
-    "ranges_g", "default_range_g", "rates", "default_rate", "bits",
-    "filters", "default_filter", "bandwidth_hz", "poles",
-    "noise_density_ug", "noise_rate_floor",
-    "offset_mg", "offset_limit_mg", "offset_tc_mg", "offset_tc_limit_mg",
-    "scale_percent", "scale_limit_percent", "scale_tc_percent", "scale_tc_limit_percent",
-    "cross_axis_percent", "cross_axis_limit_percent", "nonlinearity_percent", "rectification_ug",
-    "drift_ug", "correlation_time", "random_walk_ug", "rate_percent", "rate_limit_percent",
-)  # fmt: skip
-PRESSURE_KEYS = (
-    "default_mode", "range_pa", "iir_coefficients", "iir_weights", "reference_pressure_pa",
-    "offset_pa", "offset_limit_pa", "offset_tc_pa", "offset_tc_limit_pa", "solder_pa",
-    "acceleration_pa", "acceleration_limit_pa", "scale", "scale_limit", "rate_percent", "rate_limit_percent",
-    "drift_pa", "correlation_time", "random_walk_pa",
-    "temperature_offset_k", "temperature_offset_limit_k", "temperature_resolution_k",
-)  # fmt: skip
-MODE_KEYS = ("name", "noise_pa", "resolution_pa", "temperature_noise_k", "conversion_ms", "rate")
-
 
 def presets() -> list[str]:
     """Return the names of the shipped parts."""
@@ -48,12 +32,13 @@ def presets() -> list[str]:
 
 
 def preset(name: str) -> Description:
-    """Return the description of a shipped part, at its default range and rate or mode.
+    """Return the description of a part, at its default range, rate and filter or its default mode.
 
     Parameters
     ----------
     name : str
-        Lower case, as the part is written: "lsm6dso32".
+        A shipped part, lower case, as it is written: "lsm6dso32". Or the path of a TOML file of your own,
+        "my-part.toml" or with a slash, written like those in `sensors/datasheets`; it is read as data only.
 
     Returns
     -------
@@ -62,75 +47,74 @@ def preset(name: str) -> Description:
     Raises
     ------
     ValueError
-        If there is no such part; names the nearest.
+        If there is no such part (names the nearest) or file, or the file is not as it should be (names file and key).
 
     Examples
     --------
     >>> preset("lsm6dso32").select(range_g=16, rate=416).bandwidth
     208.0
     """
-    return read(FOLDER / f"{choose('preset', name, presets())}.toml")
+    return read(path_of(name))
 
 
 def accelerometer(name: str) -> AccelerometerDescription:
-    """Return the description of a shipped accelerometer; ValueError if `name` is none."""
+    """Return the description of an accelerometer, by its name or path; ValueError if `name` is none."""
     description = preset(name)
     if isinstance(description, AccelerometerDescription):
         return description
     raise ValueError(
-        f"preset {name!r} is a pressure sensor, not an accelerometer; allowed: {_of_kind('accelerometer')}"
+        f"preset {name!r} is a pressure sensor, not an accelerometer; allowed: {_of_kind(AccelerometerDescription)}"
     )
 
 
 def pressure_sensor(name: str) -> PressureDescription:
-    """Return the description of a shipped pressure sensor; ValueError if `name` is none."""
+    """Return the description of a pressure sensor, by its name or path; ValueError if `name` is none."""
     description = preset(name)
     if isinstance(description, PressureDescription):
         return description
-    raise ValueError(f"preset {name!r} is an accelerometer, not a pressure sensor; allowed: {_of_kind('pressure')}")
+    raise ValueError(
+        f"preset {name!r} is an accelerometer, not a pressure sensor; allowed: {_of_kind(PressureDescription)}"
+    )
 
 
 def read(path: Path) -> Description:
     """Return the description in one TOML file; ValueError, with file and key, if it is not as it should be."""
-    sheet = tomllib.loads(path.read_text(encoding="utf-8"))
     try:
-        return _describe(path.stem, sheet)
-    except (ValueError, TypeError, IndexError) as error:
+        return _described(path.stem, path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"{path.name}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path.name}: is not UTF-8 text") from error
+    except (ValueError, RecursionError) as error:  # a TOMLDecodeError is a ValueError
         raise ValueError(f"{path.name}: {error}") from error
 
 
-def _describe(name: str, sheet: dict[str, Any]) -> Description:
-    kind = choose("kind", sheet.get("kind", ""), KINDS)
-    top = TOP_KEYS if kind == "pressure" else tuple(key for key in TOP_KEYS if key != "modes")
-    _check_keys("", sheet, top)
-    _check_keys("values.", sheet["values"], ACCELEROMETER_KEYS if kind == "accelerometer" else PRESSURE_KEYS)
-    sourced = set(sheet["values"])
-    for mode in sheet.get("modes", []):
-        _check_keys("modes.", mode, MODE_KEYS)
-        sourced |= {f"modes.{key}" for key in mode}
-    _check_keys("sources.", sheet["sources"], tuple(sorted(sourced)))
+@lru_cache(maxsize=64)  # a flight asks for its parts several times; by text, so that an edited file is read anew
+def _described(name: str, text: str) -> Description:
+    sheet = tomllib.loads(text)
+    check(sheet)
     document = f"{sheet['part']}: {sheet['document']}"
-    return _accelerometer(name, document, sheet) if kind == "accelerometer" else _pressure(name, document, sheet)
+    build = _accelerometer if sheet["kind"] == "accelerometer" else _pressure
+    return build(name, document, sheet)
 
 
-def _check_keys(where: str, table: dict[str, Any], allowed: tuple[str, ...]) -> None:
-    for key in table:
-        choose("key", f"{where}{key}", [f"{where}{known}" for known in allowed])
-    for key in allowed:
-        if key not in table:
-            raise ValueError(f"key {where}{key} is missing")
+def path_of(name: str) -> Path:
+    """Return the file of a part, by its name or path; ValueError if there is none."""
+    separators = filter(None, ("/", os.sep, os.altsep))
+    if not name.endswith(".toml") and not any(separator in name for separator in separators):
+        return FOLDER / f"{choose('preset', name, presets())}.toml"
+    path = Path(name)
+    if not path.is_file():
+        raise ValueError(f"preset {name!r} is unknown: there is no such file")
+    return path
 
 
 def _accelerometer(name: str, document: str, sheet: dict[str, Any]) -> AccelerometerDescription:
     v = sheet["values"]
-    ranges = tuple(float(value) for value in v["ranges_g"])
-    for key in ("bits", "noise_density_ug"):
-        if len(v[key]) != len(ranges):
-            raise ValueError(f"key values.{key} needs one entry for each of ranges_g")
     return AccelerometerDescription(
         name=name,
         document=document,
-        ranges_g=ranges,
+        ranges_g=tuple(float(value) for value in v["ranges_g"]),
         rates=tuple(float(value) for value in v["rates"]),
         range_g=float(v["default_range_g"]),
         rate=float(v["default_rate"]),
@@ -214,8 +198,5 @@ def _pair(values: list[float]) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def _of_kind(kind: str) -> str:
-    names = (path.stem for path in sorted(FOLDER.glob("*.toml")))
-    return ", ".join(
-        name for name in names if tomllib.loads((FOLDER / f"{name}.toml").read_text("utf-8"))["kind"] == kind
-    )
+def _of_kind(kind: type[Description]) -> str:
+    return ", ".join(name for name in presets() if isinstance(preset(name), kind))
