@@ -83,8 +83,6 @@ class AirDataHead:
         "covered_until", "due", "full", "static", "total",
     )  # fmt: skip
 
-    _air: Callable[[float], Air]
-
     def __init__(
         self,
         settings: AirDataSettings,
@@ -102,6 +100,7 @@ class AirDataHead:
         self._poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
         self.due = self._poll.due
 
+        self._air: Callable[[float], Air] = lambda _: (nan, nan, nan)  # until somebody says
         self._dt, self._steps_per_second = dt, 1.0 / dt
         self._total_error, self._static_error = total_port(settings.total_port), static_port(settings.static_port)
         self._total_felt: list[float] = []
@@ -152,8 +151,6 @@ class AirDataHead:
         """
         if air is not None:
             self._air = air
-            if not self._total_felt:  # nobody tells it of the flow
-                self._total_truth, self._static_truth = self._total_port, self._static_port
         rows: list[Row] = []
         while self.due <= until:
             t = self.due
