@@ -71,3 +71,8 @@ def weak_20() -> Batch:
 @pytest.fixture(scope="session")
 def weak_with_6_g_20() -> Batch:
     return flown("weak-launch", 20, "launcher.peak_specific_force_g=6", "expect=cruise")
+
+
+@pytest.fixture(params=["untared", "cheap-sensors", "blocked-pitot", "iced-pitot"])
+def sensors_20(request: pytest.FixtureRequest) -> Batch:
+    return flown(request.param, 20)

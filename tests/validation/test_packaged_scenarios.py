@@ -142,3 +142,14 @@ def test_weak_launch_with_6_g(weak_with_6_g_20: Batch, figure: Figure) -> None:
     """Raising the force alone turns it into a cruise."""
     launched(weak_with_6_g_20, figure, slowest=0.060)
     figure("airspeed at the rail's end", weak_with_6_g_20.runs["flight.rail_exit_speed"], "m/s")
+
+
+def test_what_sensors_cost(sensors_20: Batch, figure: Figure) -> None:
+    """Every flight of a scenario about its sensors ends as it says, was recognised, and has an airspeed error."""
+    runs = sensors_20.runs
+    assert (runs["outcome"] == runs["expected"]).all()
+    name = sensors_20.scenario.name
+    figure(f"{name}: latency from true launch", 1e3 * runs["launch.latency"], "ms", 0, 40)
+    figure(f"{name}: airspeed RMSE", runs["airspeed.rmse"], "m/s", 0.1)
+    figure(f"{name}: airspeed RMSE in cruise", runs["airspeed.cruise.rmse"], "m/s")
+    figure(f"{name}: true airspeed in cruise", runs["flight.cruise_airspeed"], "m/s", STALL)
