@@ -224,12 +224,11 @@ def _sum_of_gauss_markov(
     phi = np.exp(-dt / times)
     drive = sd * np.sqrt(-np.expm1(-2.0 * dt / times))
     recursion = _Recursion(phi, drive)
-    levels = np.zeros((times.size, axes))
+    state = np.zeros((times.size, axes))
     total = np.zeros((axes, 1))
     while True:
-        after = recursion.run(generator.standard_normal((times.size, axes, CHUNK, CHUNK)), levels)
-        levels = after[:, :, -1]
-        following = after.sum(axis=0)
+        each, state = recursion.run(generator.standard_normal((times.size, axes, CHUNK, CHUNK)), state)
+        following = each.sum(axis=0)
         yield np.hstack((total, following[:, :-1])).T
         total = following[:, -1:]
 
@@ -322,13 +321,12 @@ def _low_pass(frequency: float, poles: int) -> Filter:
 def _filtered(generator: np.random.Generator, sd: Array, low_pass: Filter) -> Iterator[Array]:
     """Yield blocks of white noise behind a low-pass, whose state is drawn from its stationary distribution."""
     direct, residue, s = low_pass
-    recursion = _Recursion(np.array([(1.0 + s) / (1.0 - s)]), np.ones(1))
-    level = _stationary(generator.standard_normal((2, sd.size)) * sd, s)
+    recursion = _Recursion(np.array([(1.0 + s) / (1.0 - s)]), np.array([residue]), direct)
+    state = _stationary(generator.standard_normal((2, sd.size)) * sd, s)[np.newaxis]
     while True:
         driven = generator.standard_normal((1, sd.size, CHUNK, CHUNK)) * sd[:, np.newaxis, np.newaxis]
-        state = recursion.run(driven, level[np.newaxis])[0]
-        level = state[:, -1]
-        yield ((residue * state).real + direct * driven.reshape(state.shape)).T
+        noise, state = recursion.run(driven, state)
+        yield noise[0].T
 
 
 def band_limited(generator: np.random.Generator, count: int, dt: float, band: tuple[float, float], axes: int) -> Array:
@@ -454,28 +452,30 @@ def _power_between(f0: float, s0: float, f1: float, s1: float, f: Array) -> Arra
 
 
 class _Recursion:
-    """The recursions y_k = φ_i y_{k-1} + g_i x_k over a block, one for each φ_i, by matrix products.
+    """The filters y_k = Re(c_i w_k) + d x_k, w_k = p_i w_{k-1} + x_k over a block, one for each pole p_i.
 
-    Within a chunk y is a lower triangular matrix of powers of φ times x; from chunk to chunk the last value of each
-    follows the same recursion with φ^CHUNK. No power exceeds 1, so this holds for any |φ| < 1, real or complex.
+    By matrix products: within a chunk y is a lower triangular matrix of the impulse response times x, and w at its end
+    follows the same recursion from chunk to chunk with p^CHUNK. No power exceeds 1, so this holds for any |p| ≤ 1. Each
+    product is small and real, so that the linear algebra starts no threads for it.
     """
 
-    __slots__ = ("_across", "_decay", "_decay_across", "_within")
+    __slots__ = ("_across", "_decay_across", "_ends", "_free", "_within")
 
-    def __init__(self, phi: States, gain: Array) -> None:
-        self._within, self._decay = _powers(phi)
-        self._across, self._decay_across = _powers(phi**CHUNK)
-        self._within = self._within * gain[:, np.newaxis, np.newaxis]
+    def __init__(self, pole: States, residue: States, direct: float = 0.0) -> None:
+        lags, decay = _powers(pole)
+        self._within = ((residue[:, np.newaxis, np.newaxis] * lags).real + direct * np.eye(CHUNK))[:, np.newaxis]
+        self._free = (residue[:, np.newaxis] * decay)[:, np.newaxis, np.newaxis]
+        self._ends = lags[:, np.newaxis, :, -1:]
+        across, decay_across = _powers(pole**CHUNK)
+        self._across, self._decay_across = across, decay_across[:, np.newaxis]
 
-    def run(self, driven: Array, level: States) -> States:
-        """Return (processes, axes, BLOCK) of y for x of shape (processes, axes, CHUNK, CHUNK) and the y before."""
-        processes, axes = level.shape
-        within = driven.reshape(processes, axes * CHUNK, CHUNK) @ self._within
-        inside: States = within.reshape(driven.shape)
-        ends = inside[..., -1] @ self._across + level[..., np.newaxis] * self._decay_across[:, np.newaxis]
-        before = np.concatenate((level[..., np.newaxis], ends[..., :-1]), axis=-1)
-        inside += before[..., np.newaxis] * self._decay[:, np.newaxis, np.newaxis]
-        return inside.reshape(processes, axes, BLOCK)
+    def run(self, x: Array, w: States) -> tuple[Array, States]:
+        """Return y, (poles, axes, BLOCK), and the w after it, for x, (poles, axes, CHUNK, CHUNK), and the w before."""
+        w = w[..., np.newaxis]
+        ends = (x @ self._ends)[..., 0] @ self._across + w * self._decay_across
+        before = np.concatenate((w, ends[..., :-1]), axis=-1)[..., np.newaxis]
+        y = x @ self._within + (before * self._free).real
+        return y.reshape(*y.shape[:2], BLOCK), ends[..., -1]
 
 
 def _powers(phi: States) -> tuple[States, States]:
