@@ -7,7 +7,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sensors import AirDataHead, AirDataSettings, PressureErrors, PressureSettings, Streams
+from sensors import (
+    AirDataHead,
+    AirDataSettings,
+    PressureDescription,
+    PressureErrors,
+    PressureSettings,
+    Streams,
+    preset,
+    presets,
+)
 from sensors.settings import (
     Fault,
     PortFault,
@@ -482,10 +491,32 @@ STATIC_PORTS = st.builds(
     tube=TUBES,
     faults=PORT_FAULTS,
 )
+CHOICES = [
+    {"preset": name, "mode": mode.name, "iir": coefficient}
+    for name in presets()
+    if isinstance(preset(name), PressureDescription)
+    for mode in preset(name).modes
+    for coefficient, _ in preset(name).iir_weights
+]
+FACTORS = _span(0, 1000)
 SENSORS = st.builds(
-    PressureSettings,
-    preset=st.sampled_from(["bmp390", "bmp581"]),
-    iir=st.just(0),
+    lambda choice, **more: PressureSettings(**choice, **more),
+    choice=st.sampled_from(CHOICES),
+    errors=st.builds(
+        PressureErrors,
+        offset=FACTORS,
+        solder=FACTORS,
+        scale=FACTORS,
+        temperature=FACTORS,
+        acceleration=FACTORS,
+        thermometer=FACTORS,
+        drift=FACTORS,
+        random_walk=FACTORS,
+        clock=FACTORS,
+        drift_model=st.sampled_from(["gauss-markov", "flicker"]),
+        saturation=st.booleans(),
+        quantisation=st.booleans(),
+    ),
     noise_scale=_span(0, 1000),
     offset_pa=_span(-1e5, 1e5),
     unit=st.sampled_from(["random", "typical", "ideal"]),

@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sensors import PressureErrors, PressureSensor, Streams, noise, preset
+from sensors import PressureDescription, PressureErrors, PressureSensor, Streams, noise, preset, presets
 from sensors.filters import DigitalFilter
 from sensors.settings import Fault, ThermalSettings
+
+PARTS = [name for name in presets() if isinstance(preset(name), PressureDescription)]
 
 
 def _silent(name="bmp390", **choice):
@@ -18,6 +20,13 @@ def _silent(name="bmp390", **choice):
     part = preset(name).select(**choice)
     quiet = replace(part.mode, noise_sd=0.0, temperature_noise_sd=0.0, resolution=1e-9)
     return replace(part, mode=quiet, drift_sd=0.0, random_walk=0.0, temperature_resolution=1e-9)
+
+
+def _noise(name, blocks=20, temperature=298.15, **choice):
+    """Pressures and temperatures at rest of an ideal unit without drift, the filter settled: 1024 a block."""
+    part = replace(preset(name).select(**choice), drift_sd=0.0, random_walk=0.0)
+    records = islice(PressureSensor(part, Streams(9), unit="ideal").at_rest(100_000.0, temperature), 1, blocks + 1)
+    return [np.concatenate(column) for column in list(zip(*records, strict=True))[1:]]
 
 
 def _record(device, count, truth=lambda t: 100_000.0, temperature=298.15):
@@ -152,14 +161,21 @@ def test_filter_begins_with_its_first_value():
     assert rows[:, 1] == pytest.approx(298.15, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", ["bmp390", "bmp581"])
+@pytest.mark.parametrize("name", PARTS)
 def test_noise_a_conversion_is_the_datasheets_in_each_mode(name):
-    """n = 20 000 conversions, drift off: 2 % in sigma is caught at 4 sigma, with the quantisation counted in."""
+    """n = 20 480 conversions, drift off: 2 % in sigma is caught at 4 sigma, with the quantisation counted in.
+
+    Where a step is coarser than the noise, rounding shows its variance only on the mean over where truth is in a step.
+    """
+    step = preset(name).temperature_resolution
     for mode in preset(name).modes:
-        part = replace(preset(name).select(mode=mode.name), drift_sd=0.0, random_walk=0.0)
-        rows = _record(PressureSensor(part, Streams(9), unit="ideal"), 20_000)
-        assert rows[:, 0].std() / mode.noise_sd == pytest.approx(1, abs=4 / np.sqrt(40_000))
-        assert rows[:, 1].std() / mode.temperature_noise_sd == pytest.approx(1, abs=4 / np.sqrt(40_000))
+        p, _ = _noise(name, mode=mode.name)
+        assert p.std() / mode.noise_sd == pytest.approx(1, abs=4 / np.sqrt(2 * p.size))
+        if mode.temperature_noise_sd**2 > step**2 / 12.0:
+            truths = 298.15 + step * (np.arange(8) + 0.5) / 8
+            errors = [_noise(name, 3, temperature=truth, mode=mode.name)[1] - truth for truth in truths]
+            rms = np.sqrt(np.mean(np.square(errors)))
+            assert rms / mode.temperature_noise_sd == pytest.approx(1, abs=4 / np.sqrt(2 * 3 * 8 * 1024))
 
 
 @pytest.mark.parametrize("coefficient", [2, 8])
@@ -194,6 +210,39 @@ def test_filtered_noise_is_the_printed_table(mode):
         values = _record(PressureSensor(part, Streams(11), unit="ideal"), 32 * 320)[32 * 20 :, 0]
         ours = values.reshape(-1, 32).std(axis=1, ddof=1).mean()
         assert ours == pytest.approx(printed, abs=0.1, rel=0.05)
+
+
+# BMP388 DS001 r1.6 table 7: off, 1, 3, …, 127; "<.1" is typed 0.1. BMP280 DS001 r1.26 table 8: off, 2, …, 16. Pa rms.
+PRINTED_388 = {
+    "x1/x1": [6.6, 3.8, 2.5, 1.7, 1.2, 0.8, 0.6, 0.4],
+    "x2/x1": [4.3, 2.5, 1.6, 1.1, 0.8, 0.5, 0.4, 0.3],
+    "x4/x1": [3.2, 1.8, 1.2, 0.8, 0.6, 0.4, 0.3, 0.2],
+    "x8/x1": [2.3, 1.3, 0.9, 0.6, 0.4, 0.3, 0.2, 0.1],
+    "x16/x2": [1.6, 0.9, 0.6, 0.4, 0.2, 0.2, 0.1, 0.1],
+    "x32/x2": [1.2, 0.7, 0.4, 0.3, 0.3, 0.1, 0.1, 0.1],
+}
+PRINTED_280 = {
+    "x1/x1": [3.3, 1.9, 1.2, 0.9, 0.4],
+    "x2/x1": [2.6, 1.5, 1.0, 0.6, 0.4],
+    "x4/x1": [2.1, 1.2, 0.8, 0.5, 0.3],
+    "x8/x1": [1.6, 1.0, 0.6, 0.4, 0.2],
+    "x16/x2": [1.3, 0.8, 0.5, 0.4, 0.2],
+}
+
+
+@pytest.mark.parametrize("mode", PRINTED_388)
+def test_filtered_noise_is_the_bmp388s_table(mode):
+    """This one's table holds the standard deviation of a long record, to a unit of the last digit or 5 %."""
+    for coefficient, printed in zip((0, 1, 3, 7, 15, 31, 63, 127), PRINTED_388[mode], strict=True):
+        assert _noise("bmp388", mode=mode, iir=coefficient)[0].std() == pytest.approx(printed, abs=0.1, rel=0.05)
+
+
+@pytest.mark.parametrize("mode", PRINTED_280)
+def test_filtered_noise_is_the_bmp280s_table(mode):
+    """Between what 32 samples in a row show, the sheet's way, and a long record does, to a unit of the last digit."""
+    for coefficient, printed in zip((0, 2, 4, 8, 16), PRINTED_280[mode], strict=True):
+        values = _noise("bmp280", mode=mode, iir=coefficient)[0]
+        assert values.reshape(-1, 32).std(axis=1, ddof=1).mean() - 0.1 < printed < values.std() + 0.1
 
 
 # -- what a unit draws -------------------------------------------------------------------------------------------------
@@ -463,7 +512,7 @@ ERRORS = st.builds(
 
 @settings(max_examples=60, deadline=None)
 @given(
-    name=st.sampled_from(["bmp390", "bmp581"]),
+    name=st.sampled_from(PARTS),
     data=st.data(),
     noise_scale=FACTORS,
     errors=ERRORS,
