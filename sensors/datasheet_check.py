@@ -132,7 +132,7 @@ PRESSURE: dict[str, Rule] = {
     "default_mode": text,
     "range_pa": listed(AT_LEAST_0, count=2, rising=True),
     "iir_coefficients": listed(whole(0, 10**6), rising=True),
-    "iir_weights": listed(number(high=1.0, above=0.0)),
+    "iir_weights": listed(number(0.0, 1.0, above=0.0)),
     "reference_pressure_pa": AT_LEAST_0,
     "offset_pa": AT_LEAST_0,
     "offset_limit_pa": AT_LEAST_0,
