@@ -35,7 +35,7 @@ from sensors.pressure_description import PressureDescription
 from sensors.settings import Fault, ThermalSettings
 from sensors.streams import Streams
 from sensors.thermal import Die
-from sensors.unit import REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error, quantise, unit_vector
+from sensors.unit import REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error, unit_vector
 
 Conversion = tuple[float, float, float]  # pressure Pa, temperature K, end of conversion s
 Truth = Callable[[float], tuple[float, float]]  # time s -> pressure at the sensor Pa, temperature K
@@ -161,8 +161,9 @@ class PressureSensor:
             pressure += self.offset_tc * (temperature - REFERENCE_TEMPERATURE)
             if not self._low <= pressure <= self._high:
                 pressure = clip(pressure, self._low, self._high)
-            pressure = quantise(pressure, self._step)
-            temperature = quantise(temperature + temperature_error, self._temperature_step)
+            pressure = (pressure / self._step + ROUND - ROUND) * self._step
+            step = self._temperature_step
+            temperature = ((temperature + temperature_error) / step + ROUND - ROUND) * step
             if self._filters is not None:
                 pressure, temperature = self._filters[0].step(pressure), self._filters[1].step(temperature)
             if self._fault is not None:
