@@ -292,8 +292,11 @@ def test_conversions_made_before_the_poll_are_the_same(monkeypatch):
         monkeypatch.setattr("sensors.head.MOST_REMEMBERED", 10**9)
         at_once = _tell(AirDataHead(settings, Streams(2)), _flow(), 8.0)
         monkeypatch.setattr("sensors.head.MOST_REMEMBERED", 64)
-        assert _tell(AirDataHead(settings, Streams(2)), _flow(), 8.0) == pytest.approx(at_once, abs=1e-9, nan_ok=True)
+        head = AirDataHead(settings, Streams(2))
+        assert _tell(head, _flow(), 8.0) == pytest.approx(at_once, abs=1e-9, nan_ok=True)
         assert len(at_once) == 3
+        assert len(head._total_felt) <= 80  # what is under way, and what was before
+        assert len(head._static_felt) <= 80
 
 
 @pytest.mark.parametrize(("force", "total", "static"), [((100.0, 0.0, 0.0), 1, 0), ((0.0, 0.0, 100.0), 0, 1)])
@@ -389,6 +392,14 @@ def test_a_blocked_total_port_holds_while_the_static_pressure_goes_on():
     assert (np.diff(rows[held, 2]) < 0).all()
     after = rows[:, 4] > 0.61
     assert rows[after, 1] == pytest.approx(101_925.0 - 500 * (rows[after, 4] - 0.00241), abs=1e-6)
+
+
+@pytest.mark.parametrize("pipe", [0.0, 0.05])
+def test_the_thermometer_reads_a_die_that_is_warmer_than_the_air(pipe):
+    settings = _quiet(pipe=pipe, thermal=ThermalSettings(self_heating=5.0))
+    head = AirDataHead(settings, Streams(1), unit="ideal")
+    rows = _tell(head, _flow(), 0.2) if head.full else _fly(head, _calm, 0.2)
+    assert rows[5:, 3] == pytest.approx(293.15, abs=1e-6)
 
 
 def test_clocks_run_free_and_rows_tell_their_conversions():

@@ -222,6 +222,17 @@ def test_a_blocked_port_holds_its_last_pressure_exactly(tube):
     assert out[499] == pytest.approx(_run(_line(tube), 500, port=lambda t: 1e5 + 2e4 * t, force=(20.0, 0.0, 0.0))[499])
 
 
+def test_a_tube_fills_again_from_where_it_was_shut_off():
+    """Narrow, lag 4.5 ms: no jump to the port's pressure, 63 % of the way after about the lag."""
+    narrow = TubeSettings(length=0.3, diameter=0.5e-3, volume=1e-7)
+    out = _run(_line(narrow, (PortFault("blocked", start=0.1, stop=0.2),)), 400, lambda t: 1e5 if t < 0.15 else 1.01e5)
+    share = (out[199:] - 1e5) / 1e3
+    assert share[0] == pytest.approx(0.0, abs=1e-6)
+    assert share[1] < 0.35
+    assert 0.5 < share[6] < 0.9
+    assert share[100] == pytest.approx(1.0, abs=1e-3)
+
+
 def test_blocked_from_the_start_with_what_is_there():
     assert _run(_line(faults=(PortFault("blocked"),)), 5, port=lambda t: 1e5 + 1e6 * t).tolist() == [1e5] * 5
 

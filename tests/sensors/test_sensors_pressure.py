@@ -78,6 +78,15 @@ def test_conversions_that_nobody_reads_change_nothing_of_those_that_somebody_doe
         assert np.array_equal(np.array(third), every[2::3])
 
 
+@pytest.mark.parametrize("fault", [Fault("spike", probability=0.5, size=9.0), Fault("stuck", start=0.1, stop=0.3)])
+def test_faults_are_the_same_whoever_reads(fault):
+    """A spike is drawn for each conversion and what a stuck value holds is the last one, seen or not."""
+    every = _record(PressureSensor(preset("bmp390"), Streams(11), faults=(fault,)), 90)
+    rarely = PressureSensor(preset("bmp390"), Streams(11), faults=(fault,))
+    third = [rarely.read(t, lambda _: (100_000.0, 298.15)) for t in every[2::3, 2]]
+    assert np.array_equal(np.array(third), every[2::3])
+
+
 def test_oscillators_are_off_and_the_conversion_with_them():
     """BMP390: typ ±2 %. 400 units at 4 sigma of the estimate: 14 %. The window keeps its share of the period."""
     units = [PressureSensor(preset("bmp390"), Streams(seed)) for seed in range(400)]
