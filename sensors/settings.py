@@ -152,7 +152,7 @@ class AccelerometerSettings:
     Attributes
     ----------
     preset : str
-        A shipped part.
+        A shipped part, or the path of a TOML file of one's own.
     range_g : float or None
         Range, ±g; None is the part's default.
     rate : float or None
@@ -221,7 +221,7 @@ class PressureSettings:
     Attributes
     ----------
     preset : str
-        A shipped part.
+        A shipped part, or the path of a TOML file of one's own.
     mode : str or None
         Oversampling of pressure/temperature, "x1/x1"; None is the part's default.
     iir : int

@@ -85,7 +85,7 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
         ("vibration.band_hz=[1]", "must be a list of 2, each a number above 0"),
         ("vibration.band_hz=[200, 5]", "vibration.band_hz = [200, 5]: must be a band, low first"),
         ("accelerometer.bias=[1, 2]", "must be a number or a list of 3, each a number"),
-        ("accelerometer.preset=adxl", "--set: accelerometer: preset 'adxl' is unknown; nearest: adxl345"),
+        ("accelerometer.preset=adxl34", "--set: accelerometer: preset 'adxl34' is unknown; nearest: adxl345"),
         ("accelerometer.preset=bmp390", "is a pressure sensor, not an accelerometer"),
         ("air_data.total.preset=adxl345", "--set: air_data.total: preset 'adxl345' is an accelerometer"),
         ("air_data.static.mode=x5/x5", "--set: air_data.static: bmp390: mode 'x5/x5' is unknown; nearest:"),
@@ -158,7 +158,7 @@ def test_a_wrong_file_is_one_line_that_names_it(tmp_path: Path, content: bytes, 
 @pytest.mark.parametrize(
     ("source", "says"),
     [
-        ("catapalt", "unknown scenario 'catapalt'; did you mean 'catapult'? packaged: catapult, "),
+        ("catapalt", "unknown scenario 'catapalt'; did you mean 'catapult'? packaged: blocked-pitot, catapult, "),
         ("", "unknown scenario ''"),
         ("no/such/file", "no/such/file: there is no such file"),
         ("nothing.toml", "nothing.toml: there is no such file"),

@@ -21,7 +21,7 @@ from uavsim import __version__
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import Estimate, FlightComputer
-from uavsim.scenario import Scenario, load_scenario
+from uavsim.scenario import PLANT_STEP, Scenario, load_scenario
 from uavsim.score import Judged, score
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from uavsim.plants.jsbsim import JsbsimPlant, JsbsimSettings
 
-STEP_RATE = 1000.0  # Hz, of the plant
+STEP_RATE = 1.0 / PLANT_STEP  # Hz, 1000 exactly
 CHUNK = 500  # steps between two looks at the progress
 DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recorded
 DETECTOR_TRAIL = 0.1  # s after recognition until which it is
@@ -213,7 +213,7 @@ class Cosimulation:
                 plant.command(computer.commands)
             if on_rail and not plant.on_rail:
                 on_rail = False
-                self.vibration.leave_rail(t)
+                self.vibration.leave_rail(t + 1.0 / STEP_RATE)  # this step's has been felt
         if plant.k >= self.steps:
             self.ended = "completed" if plant.finite else "diverged"
 

@@ -13,12 +13,14 @@ from dataclasses import asdict, dataclass, field, replace
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from annotated_types import Interval
 
-from sensors import AccelerometerSettings, AirDataSettings, VibrationSettings
+from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings, presets
+from sensors.settings import Fault, PortFault
+from sensors.vibration import check as check_vibration
 from uavsim import settings
 from uavsim.flight import UNITS, without_none
 from uavsim.onboard.airspeed import EstimatorSettings
@@ -29,11 +31,13 @@ from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, Launch
 from uavsim.score import Judged, score
 from uavsim.settings import SettingError
 
+Part = TypeVar("Part", AccelerometerSettings, PressureSettings)
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
 Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout"]
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
+PLANT_STEP = 1e-3  # s
 NAME = r"[^\W_][\w .+-]{0,99}"
 LARGEST_FILE = 1_000_000  # bytes; the largest packaged scenario has a thousandth of it
 
@@ -267,9 +271,11 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
         On the first thing that is wrong.
     """
     scenario = settings.read(Scenario, values)
-    for check in (_check_name, _check_times, _check_sensors, _check_detector):
+    for check in (
+        _check_name, _check_times, _check_sensors, _check_vibration, _check_directions, _check_faults, _check_detector
+    ):  # fmt: skip
         check(scenario)
-    return _with_aircraft_found(scenario)
+    return _with_own_parts_found(_with_aircraft_found(scenario))
 
 
 def _check_name(s: Scenario) -> None:
@@ -295,6 +301,20 @@ def _with_aircraft_found(s: Scenario) -> Scenario:
     if folder.parent == hangar():
         return s
     return replace(s, aircraft=replace(s.aircraft, model=str(folder)))
+
+
+def _with_own_parts_found(s: Scenario) -> Scenario:
+    """The same with the paths of presets of one's own from the root."""
+    air = s.air_data
+    return replace(
+        s,
+        accelerometer=_found(s.accelerometer),
+        air_data=replace(air, total=_found(air.total), static=_found(air.static)),
+    )
+
+
+def _found(part: Part) -> Part:
+    return part if part.preset in presets() else replace(part, preset=str(Path(part.preset).resolve()))
 
 
 def _check_times(s: Scenario) -> None:
@@ -324,19 +344,58 @@ def _check_times(s: Scenario) -> None:
 
 
 def _check_sensors(s: Scenario) -> None:
-    """Refuse parts, ranges, rates and modes that do not exist."""
-    for key, part in (
-        ("accelerometer", s.accelerometer),
-        ("air_data.total", s.air_data.total),
-        ("air_data.static", s.air_data.static),
-    ):
+    """Refuse parts, ranges, rates, filters and modes that do not exist."""
+    for key, part in _parts(s):
         try:
             part.description()
         except ValueError as error:
             raise SettingError(f"{key}: {error}", key) from None
+
+
+def _check_vibration(s: Scenario) -> None:
     low, high = s.vibration.band_hz
     if low >= high:
         raise SettingError(f"vibration.band_hz = [{low:g}, {high:g}]: must be a band, low first", "vibration.band_hz")
+    try:
+        check_vibration(s.vibration, PLANT_STEP)
+    except ValueError as error:
+        raise SettingError(str(error), "vibration") from None
+
+
+def _check_directions(s: Scenario) -> None:
+    """Refuse vectors that only give a direction and have no length."""
+    air = s.air_data
+    for key, vector in (
+        ("total.normal", air.total.normal),
+        ("static.normal", air.static.normal),
+        ("total_port.tube.direction", air.total_port.tube.direction),
+        ("static_port.tube.direction", air.static_port.tube.direction),
+    ):
+        if vector is not None and not any(vector):
+            raise SettingError(f"air_data.{key} = {list(vector)}: must have a length", f"air_data.{key}")
+
+
+def _check_faults(s: Scenario) -> None:
+    """Refuse faults that end before they begin."""
+    for key, part in _parts(s):
+        _check_order(f"{key}.faults", part.faults)
+    _check_order("air_data.total_port.faults", s.air_data.total_port.faults)
+    _check_order("air_data.static_port.faults", s.air_data.static_port.faults)
+
+
+def _check_order(key: str, faults: Iterable[Fault | PortFault]) -> None:
+    for i, fault in enumerate(faults):
+        if fault.stop <= fault.start:
+            raise SettingError(f"{key}[{i}].stop = {fault.stop:g}: must be after its start, {fault.start:g} s", key)
+
+
+def _parts(s: Scenario) -> tuple[tuple[str, AccelerometerSettings | PressureSettings], ...]:
+    """Sensors and the keys that they stand under."""
+    return (
+        ("accelerometer", s.accelerometer),
+        ("air_data.total", s.air_data.total),
+        ("air_data.static", s.air_data.static),
+    )
 
 
 def _check_detector(s: Scenario) -> None:

@@ -6,9 +6,9 @@ noise, and each has a scalar Kalman filter (its Algorithm 1 with f(x) = h(x) = x
     P⁻ = P + Q,    K = P⁻/(P⁻ + R),    x = x + K·(z − x),    P = (1 − K)·P⁻ = K·R
 
 with Q the growth of the walk's variance a sample and R the variance of a reading, both Pa². K settles where
-K²/(1 − K) = Q/R (`steady_gain`). NIS, the innovation squared over what the filter expects of it, (z − x)²/(P⁻ + R), has
-the mean 1 if pressure and sensor are as the filter believes. The airspeed follows from the filtered pressures and the measured temperature by
-`airdata`; the mean of p_t − p_s under the cover, the pair's tare, is taken off p_t first.
+K²/(1 − K) = Q/R (`steady_gain`). NIS, the innovation squared over what the filter expects of it, (z − x)²/(P⁻ + R),
+has the mean 1 if pressure and sensor are as the filter believes. The airspeed follows from the filtered pressures and
+the measured temperature by `airdata`; the mean of p_t − p_s under the cover, the pair's tare, is taken off p_t first.
 
 Standard deviation of the airspeed
 ----------------------------------
@@ -41,7 +41,7 @@ from uavsim import airdata
 from uavsim.airdata import MAX_TEMPERATURE, MIN_TEMPERATURE
 
 Estimate = tuple[float, float, float, float, float, float, bool, float, float]
-"""t s, airspeed m/s, airspeed_sd m/s, airspeed_raw m/s, p_total Pa (tared), p_static Pa, valid, nis_total, nis_static."""
+"""t s, airspeed, airspeed_sd, airspeed_raw m/s, p_total (tared), p_static Pa, valid, nis_total, nis_static."""
 
 FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the clipped root
 VALID = 2.0  # V*; from here on the airspeed is called valid

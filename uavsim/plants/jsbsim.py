@@ -397,7 +397,7 @@ class JsbsimPlant:
         return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
 
     def flow(self) -> tuple[float, float, float, float, float, float, float]:
-        """Total and static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
+        """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
         static, temperature, mach, alpha, beta, throttle = FLOW(self.row)
         static *= PSF
         total = airdata.isentropic_total(static, mach)
