@@ -2,22 +2,27 @@
 
 Frames and units
     Body axes forward-right-down. SI, radians, kelvin; any other unit is in the name (`range_g`, `waiting_rms_g`).
-    Specific force is what an ideal accelerometer feels: (0, 0, -9.80665) m/s² at rest with z down.
-    Pressures are absolute, Pa.
+    Specific force is what an ideal accelerometer feels: (0, 0, -9.80665) m/s² at rest with z down. Readings of an
+    accelerometer are in the axes of its case. Pressures are absolute, Pa.
 
 Time
-    Every device has its own clock: its k-th sample is at φ + k/rate, φ drawn by the seed. Times are simulation
-    time, s. The plant steps at its own dt; between two steps the truth is taken as linear.
+    Every device has its own clock: its k-th sample is at φ + k/f, φ drawn by the seed, f off from its nominal rate by
+    the part's error. Times are simulation time, s. The plant steps at its own dt; between two steps the truth is taken
+    as linear, and what a sensor gives is the filtered signal at its own instant, or its mean over its window.
 
 Noise
     A "noise density" n is one-sided, the square root of the power spectral density over positive frequencies:
     white noise through an equivalent noise bandwidth ENBW has the standard deviation n √(ENBW), and the Allan
-    deviation N/√τ with N = n/√2. A datasheet's figure a conversion is used as such. Drift starts at zero: what a
-    unit is off by when it is switched on is its turn-on offset.
+    deviation N/√τ with N = n/√2. A datasheet's figure a conversion is used as such. Bias instability B is that of
+    IEEE Std 952, flat at 0.664 B. Drift starts at zero: what a unit is off by when it is switched on is its turn-on
+    offset.
 
 Order of errors
-    On continuous truth: vibration → bandwidth → sampling at the device's own instant (of a conversion: its middle).
-    On the sample: scale → bias and drift → white noise → saturation → quantisation → the part's digital filter.
+    On continuous truth: geometry (mounting, lever arm, port) → pneumatics → vibration → nonlinearity → bandwidth →
+    transport delay → sampling at the device's own instant, or the mean over its window.
+    On the sample: scale and misalignment → temperature → bias and drift → noise → saturation → quantisation → the
+    part's digital filter → time stamp, dropout, stuck value, spike.
+    Each term has a factor or a switch in the settings, and a term that is off or new changes no draw of another.
 
 One description, two readers
     `preset("lsm6dso32")` is an `AccelerometerDescription`, `preset("bmp390")` a `PressureDescription`: frozen numbers
@@ -27,9 +32,12 @@ One description, two readers
 Randomness
     `Streams(seed, index)` gives each source of noise its own named stream: adding one leaves all others as they were.
 
+What is not a number
+    A truth that is NaN gives a reading that is NaN, never an exception; once it is a number again, readings are, too.
+
 Names
     presets, preset · Streams · Accelerometer, Vibration · PressureSensor, AirDataHead, head_noise · record_at_rest ·
-    the settings and descriptions. The package imports numpy, pandas late, and nothing of uavsim.
+    the settings and descriptions. The package imports numpy, pandas, scipy and allantools late, nothing of uavsim.
 """
 
 from importlib import import_module
