@@ -84,7 +84,8 @@ class AccelerometerDescription:
     bandwidths : tuple of tuple of float
         -3 dB frequency, Hz, for each of `filters` and each of `rates`; 0 where the part has no such combination.
     poles : int
-        Poles of the low-pass that stands for the part's signal path, 1 or 2 (Butterworth).
+        Poles of the low-pass that stands for the part's signal path, 1 or 2 (Butterworth); 0: a reading is the mean of
+        the signal since the one before, a moving average, whatever `bandwidths` says.
     noise_densities : tuple of (x, y, z)
         One-sided root density of the white noise for each of `ranges_g`, (m/s²)/√Hz.
     noise_rate_floor : float
@@ -208,6 +209,11 @@ class AccelerometerDescription:
         return self.datasheet_bandwidth if self.errors.bandwidth else float("inf")
 
     @property
+    def noise_bandwidth(self) -> float:
+        """The -3 dB frequency of the low-pass behind the noise, Hz; half the rate, none, where readings are means."""
+        return self.datasheet_bandwidth if self.poles else 0.5 * self.rate
+
+    @property
     def noise_density(self) -> Triple:
         """One-sided root density of the white noise at this range, (m/s²)/√Hz."""
         return self._at_range(self.noise_densities)
@@ -220,7 +226,7 @@ class AccelerometerDescription:
     @property
     def noise_sd(self) -> Triple:
         """Standard deviation a sample of the readings' noise at this range, rate and filter, m/s²."""
-        passed = enbw(self.datasheet_bandwidth, self.rate, self.poles) / (self.rate / 2.0)
+        passed = enbw(self.noise_bandwidth, self.rate, self.poles or 1) / (self.rate / 2.0)
         return _times(self.white_sd, sqrt(passed))
 
     @property

@@ -12,6 +12,7 @@ computer: a spike is not bounded by the range and needs not be a multiple of the
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import chain, repeat
 from math import nan
 
 import numpy as np
@@ -42,12 +43,14 @@ def reading_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Call
         return None
 
     def arriving(reading: Reading) -> Reading | None:
-        t, *values = reading
-        hurt = hit(t, tuple(values))
+        values = reading[1:]
+        hurt = hit(reading[0], values)
+        if hurt is values:
+            return reading
         if hurt is None:
             return None
         x, y, z = hurt
-        return t, x, y, z
+        return reading[0], x, y, z
 
     return arriving
 
@@ -70,8 +73,8 @@ def value_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Callab
 
 def _all_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Hit | None:
     hits = [_KINDS[fault.kind](fault, _uniform(streams(f"{name}.fault.{i}"))) for i, fault in enumerate(faults)]
-    if not hits:
-        return None
+    if len(hits) < 2:
+        return hits[0] if hits else None
 
     def one_after_the_other(t: float, values: Values) -> Values | None:
         hurt: Values | None = values
@@ -85,9 +88,8 @@ def _all_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Hit | N
 
 
 def _uniform(generator: np.random.Generator) -> Iterator[float]:
-    """Yield numbers uniform in [0, 1)."""
-    while True:
-        yield from generator.random(BLOCK).tolist()
+    """Return endless numbers uniform in [0, 1)."""
+    return chain.from_iterable(generator.random(BLOCK).tolist() for _ in repeat(None))
 
 
 def _concerned(fault: Fault, values: Values) -> Iterator[tuple[bool, float]]:

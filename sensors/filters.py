@@ -2,7 +2,7 @@
 
 A low-pass of the input u, which is linear between the plant's steps, is followed by its error e against the input:
 
-    e_k = a e_{k-1} - m (u_k - u_{k-1}),   y_k = u_k + Re e_k            a = e^{p Δt},  m = r (e^{p Δt} - 1)/(p Δt)
+    e_k = a e_{k-1} - m (u_k - u_{k-1}),   y_k = u_k + Re e_k,       a = e^{p Δt},  m = r (e^{p Δt} - 1)/(p Δt)
 
 exact for such an input, and zero while it is steady. One pole: p = -ω, r = 1. Two (Butterworth): p = ω e^{j3π/4} with
 r = 1 - j, and "Re" stands for its conjugate. ω = 2π f at the -3 dB frequency f. (A residue R of H(s) at p gives
@@ -21,6 +21,8 @@ from collections.abc import Callable
 from math import ceil, expm1, inf, isfinite, pi, sqrt
 
 from sensors.unit import Triple
+
+HUGE = 1e300  # beyond is no signal any more
 
 Stage = Callable[[float, float, float], Triple]
 """Something that is done to the three axes of a signal, in and out in the same unit."""
@@ -45,36 +47,47 @@ def one_pole(bandwidth: float, dt: float) -> Triple:
 
 
 def two_pole(bandwidth: float, dt: float) -> tuple[complex, complex]:
-    """Return (a, m) of a two-pole Butterworth low-pass of `bandwidth` Hz, for steps of `dt`, s."""
+    """Return (a, m) of a two-pole Butterworth low-pass of `bandwidth` Hz, for steps of `dt`, s; (0, 0) if infinite."""
+    if bandwidth == inf:
+        return 0.0, 0.0
     p_dt = 2.0 * pi * bandwidth * dt * complex(-sqrt(0.5), sqrt(0.5))
     a = complex_exp(p_dt)
     return a, (1.0 - 1.0j) * 2.0 * complex_exp(0.5 * p_dt) * complex_sinh(0.5 * p_dt) / p_dt  # e^z - 1 for small z
 
 
-def butterworth(bandwidth: float, dt: float) -> Stage:
-    """Return a two-pole low-pass of three axes, a stage to be called once a step.
+def low_pass(a: complex, m: complex, first: Triple) -> Stage:
+    """Return a low-pass of three axes, a stage to be called once a step.
 
-    Its first input is taken to have been there before; an axis whose input was no number starts again when it is one.
+    Parameters
+    ----------
+    a, m : complex
+        Of `lag` or `two_pole`.
+    first : (x, y, z)
+        What its input has been so far. An axis whose input was no number starts again when it is one.
     """
-    a, m = two_pole(bandwidth, dt)
-    before: Triple | None = None
-    ex = ey = ez = 0j
+    # With Δ = u_k - u_{k-1}, the real part alone: e_k = q_{k-1} - c Δ,  q_k = g e_k - h e_{k-1} + d Δ.
+    c, d, g, h = m.real, (m * a.conjugate()).real, 2.0 * a.real, abs(a) ** 2
+    px, py, pz = first
+    ex = ey = ez = qx = qy = qz = 0.0
 
     def step(x: float, y: float, z: float) -> Triple:
-        nonlocal before, ex, ey, ez
-        px, py, pz = (x, y, z) if before is None else before
-        before = (x, y, z)
-        ex, ey, ez = a * ex - m * (x - px), a * ey - m * (y - py), a * ez - m * (z - pz)
-        if not isfinite(ex.real + ey.real + ez.real):
+        nonlocal px, py, pz, ex, ey, ez, qx, qy, qz
+        dx, dy, dz = x - px, y - py, z - pz
+        px, py, pz = x, y, z
+        nx, ny, nz = qx - c * dx, qy - c * dy, qz - c * dz
+        qx, qy, qz = g * nx - h * ex + d * dx, g * ny - h * ey + d * dy, g * nz - h * ez + d * dz
+        ex, ey, ez = nx, ny, nz
+        if not -HUGE < qx + qy + qz < HUGE:
             ex, ey, ez = settled(ex), settled(ey), settled(ez)
-        return x + ex.real, y + ey.real, z + ez.real
+            qx, qy, qz = settled(qx), settled(qy), settled(qz)
+        return x + ex, y + ey, z + ez
 
     return step
 
 
-def settled(error: complex) -> complex:
+def settled(error: float) -> float:
     """Return the error of a low-pass, or none where it is no number and would never be one again."""
-    return error if isfinite(error.real) else 0.0
+    return error if isfinite(error) else 0.0
 
 
 class History:
@@ -85,7 +98,7 @@ class History:
     dt : float
         Time between steps, s.
     longest : float
-        How far back it will be asked for, s.
+        How far back it will be asked for, s; what was before is as it was then.
     first : (x, y, z)
         What it has been so far.
 
@@ -108,14 +121,17 @@ class History:
 
     def at(self, age: float) -> Triple:
         """Return what it was `age` seconds before the last step."""
+        past = self._past
         steps = age * self._steps_per_second
-        whole = min(int(steps), self._last)
+        whole = int(steps)
+        if whole > self._last:
+            steps = whole = self._last
         w = steps - whole
-        x, y, z = self._past[-1 - whole]
-        ox, oy, oz = self._past[-2 - whole]
+        x, y, z = past[-1 - whole]
+        ox, oy, oz = past[-2 - whole]
         return x + w * (ox - x), y + w * (oy - y), z + w * (oz - z)
 
-    def mean(self, age: float, window: float) -> Triple:
+    def mean(self, window: float, age: float) -> Triple:
         """Return its mean over the `window` seconds that ended `age` seconds before the last step."""
         end = age * self._steps_per_second
         start = end + window * self._steps_per_second

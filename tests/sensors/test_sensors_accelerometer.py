@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import cont2discrete
 
 from sensors import Accelerometer, AccelerometerSettings, Streams, Vibration, VibrationSettings, noise, preset
-from sensors.accelerometer import one_pole
+from sensors.filters import one_pole
 
 G0 = 9.80665
 DT = 1e-3
