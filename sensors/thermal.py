@@ -46,9 +46,9 @@ class Die:
         if isfinite(self._warmth):
             elapsed = (t - self._t) / self._lag
             # The lag's error against where it would settle, as of any first-order low-pass (`sensors.filters`).
+            behind = expm1(-elapsed) / elapsed if elapsed > 0.0 else -1.0
             error = (self._warmth - self._air - self._self_heating) * exp(-elapsed)
-            if elapsed > 0.0:
-                error += (air_temperature - self._air) * expm1(-elapsed) / elapsed
+            error += (air_temperature - self._air) * behind
         else:
             error = -self._self_heating * exp(-self._powered_for / self._lag)
         self._t, self._air = t, air_temperature
