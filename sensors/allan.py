@@ -18,10 +18,11 @@ Noise behind a low-pass has the autocovariance R_k; with V(m) the variance of a 
     V(m) = Σ_{|k|<m} (1/m - |k|/m²) R_k,        σ²(m τ_0) = 2 (V(m) - V(2m))
 
 White noise behind a filter of unit gain at f = 0 so keeps its N at long τ and lies below N²/τ at short τ. A part that
-rounds its readings, not their integral, adds white noise of variance q²/12, as long as its noise is not far below q.
+rounds its readings, not their integral, adds noise of variance q²/12, white if the noise is, as long as that is not
+far below q.
 """
 
-from math import pi
+from math import exp, expm1, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +32,7 @@ from sensors.noise import FLICKER_FLAT, GAUSS_MARKOV_PEAK
 Array = NDArray[np.float64]
 
 INSTABILITY = GAUSS_MARKOV_PEAK / FLICKER_FLAT  # B of the flicker noise as high as a Gauss-Markov process of s = 1
+HARMONICS = 40  # of the rounding error's series: what is left out of it is 2 % of one hundredth
 SHORT = 0.02  # τ/T below which the Gauss-Markov formula loses digits and its series is used
 
 
@@ -84,36 +86,83 @@ def one_pole(tau: ArrayLike, interval: float, pole: float) -> Array:
     return kept
 
 
-def filtered(tau: ArrayLike, interval: float, response: Array) -> Array:
-    """Return by what fraction white noise behind a filter of unit gain at f = 0 keeps its Allan variance N²/τ.
+def drift_behind(tau: ArrayLike, correlation_time: float, interval: float, pole: float) -> Array:
+    """Return the Allan variance of a sampled Gauss-Markov process of standard deviation 1 behind a one-pole filter.
+
+    With ψ = e^{-τ_0/T} and the filter y += (1 - φ)(x - y), R_k = A ψ^|k| + C φ^|k| by partial fractions,
+
+        A = (1 - φ)²/((1 - φ/ψ)(1 - φψ)),    C = (1 - φ)² (1 - ψ²)/((1 - ψ/φ)(1 - φψ)(1 - φ²))
+
+    which slow drift passes at τ far above the filter's time constant, and not below.
+    """
+    tau = np.asarray(tau, dtype=float)
+    slow = gauss_markov(tau, correlation_time) * sampled(tau, interval)
+    if pole == 0.0:
+        return slow
+    step = interval / correlation_time
+    psi, common = exp(-step), (1.0 - pole) ** 2 / (1.0 - pole * exp(-step))
+    of_slow = common / (1.0 - pole / psi)
+    of_filter = common * -expm1(-2.0 * step) / ((1.0 - psi / pole) * (1.0 - pole**2))
+    fast = (1.0 + pole) / (1.0 - pole) * one_pole(tau, interval, pole) * interval / tau
+    behind: Array = of_slow * slow + of_filter * fast
+    return behind
+
+
+def autocovariance(response: Array) -> Array:
+    """Return R_k, k ≥ 0, of white noise of variance 1 behind a filter, from its impulse response; shape (n,)."""
+    size = 2 * response.size
+    covariance: Array = np.fft.irfft(np.abs(np.fft.rfft(response, size)) ** 2, size)[: response.size]
+    return covariance
+
+
+def rounding(correlation: Array, ratio: float) -> Array:
+    """Return R_k of what rounding to steps of 1 adds to normal noise of standard deviation `ratio`.
+
+    A sine series of the rounding error, each harmonic's characteristic function: with ρ_k the noise's correlation,
+
+        R_k = 1/(2π²) Σ_n exp(-4π² n² ratio² (1 - ρ_k))/n²
+
+    which is 1/12 at k = 0, and nothing else if the noise is white. Good to 1 % from ratio = 1/2 on.
+
+    Parameters
+    ----------
+    correlation : numpy.ndarray
+        ρ_k, k ≥ 0, shape (n,).
+    ratio : float
+        Of the noise's standard deviation to the step.
+    """
+    harmonic = np.arange(1.0, HARMONICS + 1.0)[:, np.newaxis] ** 2
+    series = np.exp(-4.0 * pi**2 * ratio**2 * harmonic * (1.0 - correlation)) / harmonic
+    covariance: Array = series.sum(axis=0) / (2.0 * pi**2)
+    covariance[0] = 1.0 / 12.0
+    return covariance
+
+
+def correlated(tau: ArrayLike, interval: float, covariance: Array) -> Array:
+    """Return the Allan variance of noise of this autocovariance over that of white noise of the same level at f = 0.
 
     Parameters
     ----------
     tau : array_like
-        s.
+        s; need not be a multiple of `interval`.
     interval : float
         Time between readings, s.
-    response : numpy.ndarray
-        The filter's impulse response, long enough to have died away, shape (n,).
+    covariance : numpy.ndarray
+        R_k, k ≥ 0, until it has died away, shape (n,).
     """
-    size = 2 * response.size
-    covariance = np.fft.irfft(np.abs(np.fft.rfft(response, size)) ** 2, size)[: response.size]
-    covariance /= covariance[0] + 2.0 * covariance[1:].sum()
     lag = np.arange(covariance.size)
     twice = np.where(lag == 0, 1.0, 2.0) * covariance
     near, far = np.cumsum(twice), np.cumsum(twice * lag)
+    whole = np.arange(1.0, lag.size + 1.0)
     m = np.asarray(tau, dtype=float) / interval
 
     def scaled_variance(count: Array) -> Array:
         """Return m V(m), linear between whole m."""
-        whole = np.arange(1.0, lag.size + 1.0)
-        return np.interp(count, whole, near - far / whole, right=np.nan)
+        within = np.interp(count, whole, near - far / whole)
+        return np.where(count < lag.size, within, near[-1] - far[-1] / count)
 
-    def variance(count: Array) -> Array:
-        beyond = 1.0 - far[-1] / count
-        return np.where(count < lag.size, scaled_variance(count), beyond)
-
-    return 2.0 * variance(m) - variance(2.0 * m)
+    kept: Array = (2.0 * scaled_variance(m) - scaled_variance(2.0 * m)) / near[-1]
+    return kept
 
 
 def density_white(f: ArrayLike) -> Array:
@@ -148,10 +197,10 @@ def gain_one_pole(f: ArrayLike, interval: float, pole: float) -> Array:
     return passed
 
 
-def gain(f: ArrayLike, interval: float, response: Array) -> Array:
-    """Return |H(f)|² of a filter with this impulse response and unit gain at f = 0."""
-    phase = -2j * pi * interval * np.asarray(f, dtype=float)
-    lags = np.arange(response.size)
-    heard = np.array([np.dot(response, np.exp(p * lags)) for p in np.atleast_1d(phase)]) / response.sum()
-    passed: Array = np.abs(heard).reshape(np.shape(f)) ** 2
-    return passed
+def shape(f: ArrayLike, interval: float, covariance: Array) -> Array:
+    """Return the density of noise of this autocovariance over what it is at f = 0."""
+    lag = np.arange(1, covariance.size)
+    angle = 2.0 * pi * interval * np.atleast_1d(np.asarray(f, dtype=float))
+    level = [covariance[0] + 2.0 * float(covariance[1:] @ np.cos(a * lag)) for a in angle]
+    relative: Array = np.array(level).reshape(np.shape(f)) / (covariance[0] + 2.0 * covariance[1:].sum())
+    return np.maximum(relative, 0.0)

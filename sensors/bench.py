@@ -1,35 +1,50 @@
 """What a device writes on a bench: at rest, z down, 101 325 Pa, 25 °C.
 
-At rest an accelerometer feels the push of the bench, upwards: with z down its specific force is (0, 0, -g0), so
-the z axis reads -9.80665 m/s². The readings come from the very code that flies.
+At rest an accelerometer feels the push of the bench, upwards: with z down its specific force is (0, 0, -g0), so the
+z axis reads -9.80665 m/s². A pressure sensor on a bench is not soldered to a board yet and its membrane feels no
+acceleration worth the name. The readings are, bit for bit, those of the device that flies.
 """
 
-from itertools import chain
-from math import ceil
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sensors.accelerometer import Accelerometer
 from sensors.accelerometer_description import AccelerometerDescription
-from sensors.catalogue import preset
+from sensors.catalogue import Description, preset
 from sensors.choice import choose
 from sensors.pressure import PressureSensor
-from sensors.pressure_description import PressureDescription
+from sensors.pressure_description import PressureErrors
 from sensors.streams import Streams
-from sensors.unit import G0, Unit
+from sensors.unit import G0, REFERENCE_TEMPERATURE, Unit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     import pandas as pd
 
+Array = NDArray[np.float64]
+
 PRESSURE = 101325.0  # Pa, standard atmosphere (ISO 2533)
-TEMPERATURE = 298.15  # K, 25 °C, at which datasheets state their figures
+UNITS: tuple[Unit, ...] = ("random", "typical", "ideal")
+UNSOLDERED = PressureErrors(solder=0.0, acceleration=0.0)
+COLUMNS = {"accelerometer": ("t", "fx", "fy", "fz"), "pressure": ("t", "pressure", "temperature")}
 
 
-def record_at_rest(name: str, *, duration: float, seed: int, unit: Unit = "random") -> "pd.DataFrame":
-    """Return what a shipped part writes on a bench, at its largest range and default rate or mode.
+def record_at_rest(
+    name: str,
+    *,
+    duration: float,
+    seed: int,
+    unit: Unit = "random",
+    range_g: float | None = None,
+    rate: float | None = None,
+    filter: str | None = None,
+    mode: str | None = None,
+    iir: int | None = None,
+    noise_scale: float = 1.0,
+) -> "pd.DataFrame":
+    """Return what a part writes on a bench, by default at its largest range and its default rate or mode.
 
     Parameters
     ----------
@@ -41,6 +56,8 @@ def record_at_rest(name: str, *, duration: float, seed: int, unit: Unit = "rando
         Draws the unit, its clock's phase and its noise: the same seed gives the same frame.
     unit : {"random", "typical", "ideal"}
         Turn-on errors: drawn within the datasheet, exactly one standard deviation, or none.
+    range_g, rate, filter, mode, iir, noise_scale
+        As of `on_bench`.
 
     Returns
     -------
@@ -51,7 +68,7 @@ def record_at_rest(name: str, *, duration: float, seed: int, unit: Unit = "rando
     Raises
     ------
     ValueError
-        For an unknown part or unit, or a duration that is not positive.
+        For an unknown part, setting or unit, or a duration that is not positive.
 
     Examples
     --------
@@ -61,35 +78,115 @@ def record_at_rest(name: str, *, duration: float, seed: int, unit: Unit = "rando
     """
     import pandas as pd  # late: it takes half a second
 
-    if not 0.0 < duration < float("inf"):
-        raise ValueError(f"duration must be positive, not {duration!r}")
-    choose("unit", unit, ("random", "typical", "ideal"))
+    part = on_bench(name, range_g=range_g, rate=rate, filter=filter, mode=mode, iir=iir, noise_scale=noise_scale)
+    columns = columns_of(part)
+    rows = list(blocks(part, duration=duration, seed=seed, unit=unit))
+    return pd.DataFrame(np.concatenate(rows) if rows else np.empty((0, len(columns))), columns=list(columns))
+
+
+def on_bench(
+    name: str,
+    *,
+    range_g: float | None = None,
+    rate: float | None = None,
+    filter: str | None = None,
+    mode: str | None = None,
+    iir: int | None = None,
+    noise_scale: float = 1.0,
+) -> Description:
+    """Return the description of a part as it lies on a bench.
+
+    Parameters
+    ----------
+    name : str
+        The preset.
+    range_g, rate, filter
+        Of an accelerometer: range, ±g, its largest by default, output rate, Hz, and low-pass setting.
+    mode, iir
+        Of a pressure sensor: oversampling, "x1/x1", and coefficient of the digital filter.
+    noise_scale : float
+        Factor on the white noise.
+
+    Raises
+    ------
+    ValueError
+        For an unknown part, or a setting that it does not have.
+    """
+    if not 0.0 <= noise_scale <= 1000.0:
+        raise ValueError(f"noise_scale must be a number from 0 to 1000, not {noise_scale!r}")
     description = preset(name)
     if isinstance(description, AccelerometerDescription):
-        columns = ["t", "fx", "fy", "fz"]
-        rows = _accelerometer_rows(description.select(range_g=max(description.ranges_g)), duration, seed, unit)
+        _refuse(description.name, "an accelerometer", mode=mode, iir=iir)
+        largest = max(description.ranges_g) if range_g is None else range_g
+        return description.select(range_g=largest, rate=rate, filter=filter).scaled(noise_scale)
+    _refuse(description.name, "a pressure sensor", range_g=range_g, rate=rate, filter=filter)
+    return description.select(mode=mode, iir=iir).scaled(noise_scale, UNSOLDERED)
+
+
+def _refuse(name: str, kind: str, **settings: object) -> None:
+    for key, value in settings.items():
+        if value is not None:
+            raise ValueError(f"{name} is {kind} and has no {key}")
+
+
+def columns_of(description: Description) -> tuple[str, ...]:
+    """Return the columns of a record of this part."""
+    return COLUMNS["accelerometer" if isinstance(description, AccelerometerDescription) else "pressure"]
+
+
+def blocks(description: Description, *, duration: float, seed: int, unit: Unit = "random") -> Iterator[Array]:
+    """Return a record piece by piece, so that hours of it need no memory.
+
+    Parameters
+    ----------
+    description : AccelerometerDescription or PressureDescription
+        As `on_bench` gives it.
+    duration, seed, unit
+        As of `record_at_rest`.
+
+    Returns
+    -------
+    iterator of numpy.ndarray
+        Shape (n, 4) or (n, 3), with the columns of `columns_of`; a longer record begins as a shorter one.
+
+    Raises
+    ------
+    ValueError
+        For an unknown unit, or a duration that is not positive.
+    """
+    if not 0.0 < duration < float("inf"):
+        raise ValueError(f"duration must be positive, not {duration!r}")
+    choose("unit", unit, UNITS)
+    return _until(duration, _endless(description, Streams(seed), unit))
+
+
+def _endless(description: Description, streams: Streams, unit: Unit) -> Iterator[Array]:
+    if isinstance(description, AccelerometerDescription):
+        yield from Accelerometer(description, streams, unit=unit).at_rest((0.0, 0.0, -G0))
     else:
-        columns = ["t", "pressure", "temperature"]
-        rows = _pressure_rows(description, duration, seed, unit)
-    # Straight into an array: an hour of tuples would take half a gigabyte.
-    table = np.fromiter(chain.from_iterable(rows), dtype=float).reshape(-1, len(columns))
-    return pd.DataFrame(table, columns=columns)
+        sensor = PressureSensor(description, streams, unit=unit)
+        for end, pressure, temperature in sensor.at_rest(PRESSURE, REFERENCE_TEMPERATURE):
+            yield np.column_stack((end, pressure, temperature))
 
 
-def _accelerometer_rows(
-    description: AccelerometerDescription, duration: float, seed: int, unit: Unit
-) -> "Iterator[tuple[float, ...]]":
-    device = Accelerometer(description, Streams(seed), unit=unit)
-    for second in range(ceil(duration) + 1):  # the force is steady: once a second is often enough
-        for reading in device.step((float(second), (0.0, 0.0, -G0))):
-            if reading[0] < duration:
-                yield reading
+def _until(duration: float, endless: Iterator[Array]) -> Iterator[Array]:
+    for block in endless:
+        if block.size and block[-1, 0] >= duration:
+            yield block[: np.searchsorted(block[:, 0], duration)]
+            return
+        yield block
 
 
-def _pressure_rows(
-    description: PressureDescription, duration: float, seed: int, unit: Unit
-) -> "Iterator[tuple[float, ...]]":
-    device = PressureSensor(description, Streams(seed), unit=unit)
-    while device.end < duration:
-        pressure, temperature, t = device.read(device.end, lambda _: (PRESSURE, TEMPERATURE))
-        yield t, pressure, temperature
+def gathered(pieces: Iterator[Array], rows: int = 1 << 16) -> Iterator[Array]:
+    """Yield the same record in larger pieces, which cost less to look at each."""
+    waiting: list[Array] = []
+    for piece in pieces:
+        waiting.append(piece)
+        if sum(map(len, waiting)) >= rows:
+            yield np.concatenate(waiting)
+            waiting = []
+    if waiting:
+        yield np.concatenate(waiting)
+
+
+__all__ = ["COLUMNS", "UNITS", "blocks", "columns_of", "gathered", "on_bench", "record_at_rest"]

@@ -22,7 +22,7 @@ from math import log10
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sensors.noise_fit import NoiseFit, fit_noise
+from sensors.noise_fit import Drift, NoiseFit, fit_noise
 from sensors.promise import Promise, promised, promises
 
 __all__ = ["Allan", "Characterisation", "Histogram", "NoiseFit", "Promise", "Pyramid", "Spectrum", "allan_deviation",
@@ -41,7 +41,8 @@ BANDS = 24  # a decade of frequency
 OVERLAP_BAND = 0.1  # share of a level's rate up to which its means have the density of the readings
 NEAR = 3  # points on each side by which a slope is told
 BINS, SPAN = 10, 5.0  # bins a standard deviation, where the readings' own steps are finer; half width in such
-GRID = 4096  # readings by which the steps are told
+GRID, OFTEN = 4096, 3  # readings by which the steps are told; how often a value must be among them
+SURE = 30.0  # degrees of freedom that an Allan deviation must have to count as the least
 FEWEST = 64  # readings below which there is nothing to say
 
 
@@ -193,7 +194,9 @@ class Pyramid:
             self._stored[level] += len(part)
 
 
-def characterise(blocks: Iterable[Array], channels: Sequence[str]) -> tuple[Characterisation, ...]:
+def characterise(
+    blocks: Iterable[Array], channels: Sequence[str], drift: Drift = "searched"
+) -> tuple[Characterisation, ...]:
     """Return the statistics of a record, channel by channel.
 
     Parameters
@@ -203,6 +206,8 @@ def characterise(blocks: Iterable[Array], channels: Sequence[str]) -> tuple[Char
         The readings count as equally spaced, at the rate that the first and the last t give.
     channels : sequence of str
         Names of the columns after t.
+    drift : float or {"flicker", "searched"}
+        What is known of the drift's shape, as of `fit_noise`.
 
     Returns
     -------
@@ -224,12 +229,14 @@ def characterise(blocks: Iterable[Array], channels: Sequence[str]) -> tuple[Char
     levels = [level for i, level in enumerate(pyramid.levels()) if i == 0 or len(level) >= LEAST]
     rate = (pyramid.count - 1) / (end - start)
     return tuple(
-        _characterise(channel, [np.ascontiguousarray(level[:, axis]) for level in levels], rate, pyramid, axis)
+        _characterise(channel, [np.ascontiguousarray(level[:, axis]) for level in levels], rate, pyramid, axis, drift)
         for axis, channel in enumerate(channels)
     )
 
 
-def _characterise(channel: str, series: list[Array], rate: float, pyramid: Pyramid, axis: int) -> Characterisation:
+def _characterise(
+    channel: str, series: list[Array], rate: float, pyramid: Pyramid, axis: int, drift: Drift
+) -> Characterisation:
     deviation = _allan(series, rate)
     return Characterisation(
         channel=channel,
@@ -240,7 +247,7 @@ def _characterise(channel: str, series: list[Array], rate: float, pyramid: Pyram
         allan=deviation,
         spectrum=_spectrum(series, rate),
         histogram=_histogram(series[0], rate, deviation),
-        fit=fit_noise(deviation.tau, deviation.deviation, deviation.edf, rate),
+        fit=fit_noise(deviation.tau, deviation.deviation, deviation.edf, rate, drift),
     )
 
 
@@ -353,7 +360,8 @@ def _in_bands(f: Array, power: Array) -> tuple[Array, Array]:
 
 def _histogram(values: Array, rate: float, deviation: Allan) -> Histogram:
     step = _resolution(values)
-    quietest = float(deviation.tau[np.argmin(deviation.deviation)])
+    sure = deviation.edf >= min(SURE, float(deviation.edf.max()))
+    quietest = float(deviation.tau[sure][np.argmin(deviation.deviation[sure])])
     length = min(max(round(quietest * rate), FEWEST), values.size)
     whole = values.size // length * length
     windows = values[:whole].reshape(-1, length)
@@ -362,7 +370,9 @@ def _histogram(values: Array, rate: float, deviation: Allan) -> Histogram:
         means = np.round(means / step) * step  # so that the grid stays
     rest = (windows - means).ravel()
     sd = float(np.sqrt(np.mean((windows - windows.mean(axis=1, keepdims=True)) ** 2)))
-    width = step if step is not None and step > sd / BINS else max(sd / BINS, np.finfo(float).tiny)
+    width = max(sd / BINS, np.finfo(float).tiny)
+    if step is not None:
+        width = step * (2 * int(width / step / 2.0) + 1)  # whole steps, an odd number: no reading is on an edge
     half = int(np.ceil(SPAN * sd / width)) + 0.5
     edges = width * np.arange(-half, half + 1.0)
     count, _ = np.histogram(rest, edges)
@@ -371,9 +381,10 @@ def _histogram(values: Array, rate: float, deviation: Allan) -> Histogram:
 
 def _resolution(values: Array) -> float | None:
     """Return the step of the readings, or None if they are on no grid."""
-    levels = np.unique(values[:GRID])
+    found, count = np.unique(values[:GRID], return_counts=True)
+    levels = found[count >= OFTEN]  # a reading that was filled in stands alone
     gaps = np.diff(levels)
-    gaps = gaps[gaps > 1e-9 * max(float(np.ptp(levels)), np.finfo(float).tiny)]
+    gaps = gaps[gaps > 1e-9 * gaps.sum()]  # the same step, but for rounding
     if not gaps.size:
         return None
     steps = gaps / gaps.min()

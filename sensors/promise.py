@@ -1,10 +1,10 @@
 """What a description promises of a record at rest: Allan deviation and density, term by term, and N, B, K.
 
 White noise has the standard deviation σ_w a reading ahead of the part's low-pass or digital filter, so N = σ_w √τ_0,
-and the filter bends the Allan deviation down at short τ. Rounding to steps q adds white noise of variance q²/12; an
-accelerometer rounds behind its low-pass, a pressure sensor ahead of its digital filter. Drift is a Gauss-Markov
-process or flicker noise of the same peak, with a random walk beside it. Turn-on errors do not show. The equations are
-those of `sensors.allan`.
+and the filter bends the Allan deviation down at short τ. Rounding to steps q adds noise of variance q²/12. Drift
+is a Gauss-Markov process or flicker noise of the same peak, with a random walk beside it. An accelerometer drifts and
+rounds behind its low-pass, a pressure sensor ahead of its digital filter. Turn-on errors do not show. The equations
+are those of `sensors.allan`.
 """
 
 from dataclasses import dataclass
@@ -21,6 +21,7 @@ from sensors.pressure_description import PressureDescription
 Array = NDArray[np.float64]
 Description = AccelerometerDescription | PressureDescription
 
+AGES = 1e6  # correlation times over the longest averaging time from which a drift is a random walk
 TERMS = ("white noise", "quantisation", "bias instability", "random walk")
 
 
@@ -61,20 +62,20 @@ class Promise:
     _drifts: tuple[tuple[float, float], ...]
     _white: float
     _round: float
-    _response: Array | None
-    _round_is_filtered: bool
+    _white_covariance: Array | None
+    _round_covariance: Array | None
+    _pole: float
 
     def terms(self, tau: ArrayLike) -> dict[str, Array]:
         """Return the Allan deviation of each of `TERMS`, u, at each `tau`, s."""
         interval, tau = 1.0 / self.rate, np.asarray(tau, dtype=float)
-        kept = 1.0 if self._response is None else allan.filtered(tau, interval, self._response)
-        discrete = allan.sampled(tau, interval)
-        drift = (sd**2 * allan.gauss_markov(tau, time) * discrete for sd, time in self._drifts)
+        drift = (sd**2 * allan.drift_behind(tau, time, interval, self._pole) for sd, time in self._drifts)
+        walk = AGES * float(np.max(tau, initial=interval))  # a random walk is a Gauss-Markov process of endless T
         variances = (
-            self._white**2 * allan.white(tau) * kept,
-            self._round**2 * allan.white(tau) * (kept if self._round_is_filtered else 1.0),
+            self._white**2 * allan.white(tau) * _kept(tau, interval, self._white_covariance),
+            self._round**2 * allan.white(tau) * _kept(tau, interval, self._round_covariance),
             sum(drift, np.zeros_like(tau)),
-            self.K**2 * allan.random_walk(tau) * discrete,
+            self.K**2 * 0.5 * walk * allan.drift_behind(tau, walk, interval, self._pole),
         )
         return {name: np.sqrt(variance) for name, variance in zip(TERMS, variances, strict=True)}
 
@@ -86,11 +87,21 @@ class Promise:
     def density(self, f: ArrayLike) -> Array:
         """Return the whole one-sided root density, u/√Hz, at each frequency, Hz, up to half the rate."""
         interval, f = 1.0 / self.rate, np.asarray(f, dtype=float)
-        kept = 1.0 if self._response is None else allan.gain(f, interval, self._response)
         drift = sum(sd**2 * allan.density_gauss_markov(f, time) for sd, time in self._drifts)
-        white = self._white**2 * kept + self._round**2 * (kept if self._round_is_filtered else 1.0)
-        whole: Array = np.sqrt(white * allan.density_white(f) + drift + self.K**2 * allan.density_random_walk(f))
+        drift += self.K**2 * allan.density_random_walk(f)
+        white = self._white**2 * _shape(f, interval, self._white_covariance)
+        white += self._round**2 * _shape(f, interval, self._round_covariance)
+        behind = allan.gain_one_pole(f, interval, self._pole)
+        whole: Array = np.sqrt(white * allan.density_white(f) + drift * behind)
         return whole
+
+
+def _kept(tau: Array, interval: float, covariance: Array | None) -> Array | float:
+    return 1.0 if covariance is None else allan.correlated(tau, interval, covariance)
+
+
+def _shape(f: Array, interval: float, covariance: Array | None) -> Array:
+    return np.ones_like(f) if covariance is None else allan.shape(f, interval, covariance)
 
 
 def promises(description: Description) -> tuple[Promise, ...]:
@@ -135,36 +146,43 @@ def promised(description: Description, tau: ArrayLike, channel: str | None = Non
 
 def _accelerometer(d: AccelerometerDescription) -> tuple[Promise, ...]:
     passes = d.noise_bandwidth
-    response = None if passes >= d.rate / 2.0 else low_pass(passes, d.rate, d.poles)
-    per_reading = sqrt(1.0 / d.rate)
-    rounding = d.resolution / sqrt(12.0)
-    flicker = d.errors.drift_model == "flicker"
+    filtered = passes < d.rate / 2.0
+    covariance = allan.autocovariance(low_pass(passes, d.rate, d.poles)) if filtered else None
     return tuple(
-        Promise(
-            channel=channel,
-            unit="m/s²",
-            rate=d.rate,
-            resolution=d.resolution,
-            noise_sd=sqrt(noise**2 + rounding**2),
-            N=per_reading * sqrt(white**2 + rounding**2),
-            B=allan.INSTABILITY * d.drift_sd,
-            K=d.random_walk,
-            correlation_time=None if flicker else d.correlation_time,
-            bandwidth=float("inf") if response is None else passes,
-            _drifts=_drifts(d),
-            _white=white * per_reading,
-            _round=rounding * per_reading,
-            _response=response,
-            _round_is_filtered=False,
-        )
+        _axis(d, channel, white, noise, covariance)
         for channel, white, noise in zip(("fx", "fy", "fz"), d.white_sd, d.noise_sd, strict=True)
+    )
+
+
+def _axis(d: AccelerometerDescription, channel: str, white: float, noise: float, covariance: Array | None) -> Promise:
+    """Of one axis: `white` and `noise` are the standard deviations ahead of its low-pass and behind it."""
+    q, per_reading = d.resolution, sqrt(1.0 / d.rate)
+    rounded = None if covariance is None else allan.rounding(covariance / covariance[0], noise / q)
+    error = q * sqrt(1.0 / 12.0 if rounded is None else rounded[0] + 2.0 * rounded[1:].sum())  # at f = 0
+    return Promise(
+        channel=channel,
+        unit="m/s²",
+        rate=d.rate,
+        resolution=q,
+        noise_sd=sqrt(noise**2 + q**2 / 12.0),
+        N=per_reading * sqrt(white**2 + error**2),
+        B=allan.INSTABILITY * d.drift_sd,
+        K=d.random_walk,
+        correlation_time=None if d.errors.drift_model == "flicker" else d.correlation_time,
+        bandwidth=float("inf") if covariance is None else d.noise_bandwidth,
+        _drifts=_drifts(d),
+        _white=white * per_reading,
+        _round=error * per_reading,
+        _white_covariance=covariance,
+        _round_covariance=rounded,
+        _pole=0.0,
     )
 
 
 def _pressure(d: PressureDescription) -> Promise:
     a, per_reading, rounding = d.iir_weight, sqrt(1.0 / d.rate), d.resolution / sqrt(12.0)
     before = sqrt(d.white_sd**2 + rounding**2)
-    flicker = d.errors.drift_model == "flicker"
+    covariance = None if a == 1.0 else allan.autocovariance(_decay(a))
     return Promise(
         channel="pressure",
         unit="Pa",
@@ -174,13 +192,14 @@ def _pressure(d: PressureDescription) -> Promise:
         N=per_reading * before,
         B=allan.INSTABILITY * d.drift_sd,
         K=d.random_walk,
-        correlation_time=None if flicker else d.correlation_time,
+        correlation_time=None if d.errors.drift_model == "flicker" else d.correlation_time,
         bandwidth=float("inf") if a == 1.0 else d.bandwidth,
         _drifts=_drifts(d),
         _white=d.white_sd * per_reading,
         _round=rounding * per_reading,
-        _response=None if a == 1.0 else _decay(a),
-        _round_is_filtered=True,
+        _white_covariance=covariance,
+        _round_covariance=covariance,
+        _pole=1.0 - a,
     )
 
 
@@ -216,7 +235,9 @@ def low_pass(bandwidth: float, rate: float, poles: int) -> Array:
         return _decay(float(np.sqrt(c * c + 2.0 * c) - c))  # |H|² = a²/(a² + 2 (1 - a) c) = 1/2
     from scipy.signal import butter, lfilter  # late: it takes half a second
 
-    impulse = np.zeros(int(8.0 * rate / bandwidth) + 8)
+    b, a = butter(2, bandwidth, fs=rate)
+    slowest = float(np.max(np.abs(np.roots(a))))
+    impulse = np.zeros(int(28.0 / -log(slowest)) + 8)  # down to 1e-12
     impulse[0] = 1.0
-    response: Array = lfilter(*butter(2, bandwidth, fs=rate), impulse)
+    response: Array = lfilter(b, a, impulse)
     return response

@@ -10,8 +10,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from sensors import presets
-from sensors.catalogue import FOLDER, accelerometer
 from uavsim.flight import Flight
 from uavsim.scenario import Scenario
 from uavsim.studies.batch import Batch
@@ -194,53 +192,7 @@ def test_figures_that_no_flight_has_are_left_out(capsys: pytest.CaptureFixture[s
     assert "Quantiles" not in capsys.readouterr().out
 
 
-# -- sensors and cost ------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", presets())
-def test_a_preset_shows_every_value_with_unit_and_source(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.print_preset(name)
-    out = capsys.readouterr().out
-    head, body = out.split("\n\n", 1)
-    assert head.splitlines() == [f"{name}: {terminal._datasheet(name)['part']}", terminal._datasheet(name)["document"]]
-    assert widest(body) <= 80
-    sheet = terminal._datasheet(name)
-    flat = re.sub(r"\W+", "", body)
-    for key in sheet["values"]:
-        assert terminal._words(key) in body
-    for source in sheet["sources"].values():
-        assert re.sub(r"\W+", "", source)[:12] in flat
-    assert "_" not in "".join(line.split("  ")[0] for line in body.splitlines())
-
-
-def test_units_of_a_preset_are_those_that_are_read(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.print_preset("lsm6dso32")
-    out = capsys.readouterr().out
-    part = accelerometer("lsm6dso32")
-    assert re.search(r"^ranges +4, 8, 16, 32 g ", out, re.MULTILINE)
-    assert re.search(rf"^default rate +{part.rate:g} Hz ", out, re.MULTILINE)
-    assert re.search(r"^noise density +120, 130, 160, 220 ", out, re.MULTILINE)
-    assert "µg/√Hz" in out
-
-
-def test_every_unit_belongs_to_a_key_that_exists() -> None:
-    keys: set[str] = set()
-    for file in FOLDER.glob("*.toml"):
-        sheet = terminal._datasheet(file.stem)
-        keys |= {*sheet["values"], *(key for mode in sheet.get("modes", []) for key in mode)}
-    assert set(terminal.PRESET_UNITS) <= keys
-    without = {"default_mode", "iir_coefficients", "iir_weights", "scale", "scale_limit", "name"}
-    assert keys - set(terminal.PRESET_UNITS) == without
-
-
-def test_an_unknown_preset_is_named() -> None:
-    with pytest.raises(ValueError, match="nearest: adxl345"):
-        terminal.print_preset("adxl")
-
-
-def test_presets_are_a_line_each(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.print_presets()
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == presets()
+# -- cost -----------------------------------------------------------------------------------------------------------
 
 
 def test_the_last_line_of_a_cost_is_its_ratio(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,11 +1,10 @@
-"""Tables for the terminal: a flight's score, several flights, sensor presets, the cost of a step. Units everywhere.
+"""Tables for the terminal: a flight's score, several flights, the cost of a step. Units everywhere.
 
 All fit into 80 columns and are the same lines in a pipe; colours are for terminals that want them.
 """
 
 import os
 import sys
-import tomllib
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -24,42 +23,6 @@ if TYPE_CHECKING:
 
 NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
 QUANTILES = {"5 %": 0.05, "median": 0.50, "95 %": 0.95}
-
-PRESET_UNITS = {
-    "ranges_g": "g",
-    "default_range_g": "g",
-    "rates": "Hz",
-    "default_rate": "Hz",
-    "bits": "bit",
-    "noise_density_ug": "µg/√Hz",
-    "noise_rate_floor": "Hz",
-    "offset_mg": "mg",
-    "offset_limit_mg": "mg",
-    "scale_percent": "%",
-    "scale_limit_percent": "%",
-    "drift_ug": "µg",
-    "correlation_time": "s",
-    "random_walk_ug": "µg/√s",
-    "range_pa": "Pa",
-    "reference_pressure_pa": "Pa",
-    "offset_pa": "Pa",
-    "offset_limit_pa": "Pa",
-    "rate_percent": "%",
-    "rate_limit_percent": "%",
-    "drift_pa": "Pa",
-    "random_walk_pa": "Pa/√s",
-    "temperature_offset_k": "K",
-    "temperature_offset_limit_k": "K",
-    "temperature_resolution_k": "K",
-    "noise_pa": "Pa",
-    "resolution_pa": "Pa",
-    "temperature_noise_k": "K",
-    "conversion_ms": "ms",
-    "rate": "Hz",
-}
-"""Units of a datasheet's values; the others have none."""
-
-_SUFFIXES = ("_g", "_ug", "_mg", "_percent", "_pa", "_k", "_ms")
 
 
 class _Console(Console):
@@ -248,83 +211,6 @@ def _with_band(quantile: "QuantileBand", digits: int) -> str:
     if quantile.low is None or quantile.high is None:
         band = f"≥ {low}" if quantile.low is not None else f"≤ {high}" if quantile.high is not None else "–"
     return f"{_number(quantile.value, digits)}\n[dim]{band}[/]"
-
-
-# -- sensors ---------------------------------------------------------------------------------------------------------
-
-
-def print_presets() -> None:
-    """List the sensor presets, a line each."""
-    from sensors import presets
-
-    for name in presets():
-        sheet = _datasheet(name)
-        say(f"{name:<12} {sheet['kind']:<14} {sheet['part']}")
-
-
-def print_preset(name: str) -> None:
-    """Print a preset: every value with its unit, and where the datasheet has it.
-
-    Raises
-    ------
-    ValueError
-        If there is no such preset.
-    """
-    from sensors import preset
-
-    preset(name)
-    sheet, console = _datasheet(name), _console()
-    sources = sheet["sources"]
-    _print(console, f"[bold]{name}[/bold]: {escape(sheet['part'])}\n{escape(sheet['document'])}\n")
-    table = _sources_table("value")
-    for key, value in sheet["values"].items():
-        unit = PRESET_UNITS.get(key, "")
-        table.add_row(_words(key), f"{_plain(value)} {unit}".rstrip(), escape(sources.get(key, "")))
-    _print(console, table)
-    modes = sheet.get("modes", [])
-    if modes:
-        table = _table(
-            ["mode", *(", ".join(filter(None, (_words(k), PRESET_UNITS.get(k)))) for k in list(modes[0])[1:])]
-        )
-        for column in table.columns:
-            column.no_wrap = False
-        for mode in modes:
-            table.add_row(*map(_plain, mode.values()))
-        _print(console, "", table, "")
-        table = _sources_table()
-        for key in modes[0]:
-            if f"modes.{key}" in sources:
-                table.add_row(_words(key), escape(sources[f"modes.{key}"]))
-        _print(console, table)
-
-
-def _sources_table(*columns: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    table.add_column("", no_wrap=True)
-    for name in columns:
-        table.add_column(name, max_width=24)
-    table.add_column("where from, and how it is taken")
-    return table
-
-
-def _words(key: str) -> str:
-    """Return a key as words, without the unit at its end."""
-    if key in PRESET_UNITS:
-        key = next((key.removesuffix(s) for s in _SUFFIXES if key.endswith(s)), key)
-    return key.replace("_", " ")
-
-
-def _datasheet(name: str) -> dict[str, Any]:
-    from sensors.catalogue import FOLDER
-
-    return tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
-
-
-def _plain(value: Any) -> str:
-    """Return a value as text; axes that are alike count once."""
-    if isinstance(value, list):
-        return ", ".join("/".join(dict.fromkeys(map(_plain, v))) if isinstance(v, list) else _plain(v) for v in value)
-    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 # -- cost ------------------------------------------------------------------------------------------------------------
