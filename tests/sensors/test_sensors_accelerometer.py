@@ -33,6 +33,7 @@ LSM = preset("lsm6dso32")
 # A part without noise and drift, in steps of 2e-9 m/s²: what is left is the error under test.
 SILENT = replace(LSM, noise_densities=((0.0, 0.0, 0.0),) * 4, drift_sd=0.0, random_walk=0.0, bits=(38, 38, 38, 38))
 FINE = 1e-8  # m/s²
+OPEN = SILENT.scaled(1.0, AccelerometerErrors(bandwidth=False, quantisation=False))
 
 
 def _fly(device, force, duration):
@@ -260,6 +261,14 @@ def test_vibration_is_turned_with_the_case():
     assert turned == pytest.approx(straight @ np.array(attitude(10, 20, 30)), abs=1e-6)
 
 
+def test_vibration_is_felt_from_the_first_step_on():
+    """At 6664 Hz six readings lie between the plant's first two steps."""
+    steady = Vibration.still()
+    steady.step = lambda: (5.0, 6.0, 7.0)
+    readings = _fly(Accelerometer(OPEN.select(rate=6664.0), Streams(1), unit="ideal", vibration=steady), _rest, 0.01)
+    assert readings[:, 1:] == pytest.approx(np.tile([5.0, 6.0, 7.0 - G0], (len(readings), 1)), abs=1e-9)
+
+
 # -- nonlinearity --------------------------------------------------------------------------------------------------
 
 
@@ -304,9 +313,6 @@ def test_a_ramp_is_late_by_the_low_passes_own_delay(poles, steps):
     lag = steps / (2 * np.pi * 40.0)
     assert late[:, 1] == pytest.approx(100 * (late[:, 0] - lag), abs=1e-6)
     assert late[:, 2] == pytest.approx(-50 * (late[:, 0] - lag), abs=1e-6)
-
-
-OPEN = SILENT.scaled(1.0, AccelerometerErrors(bandwidth=False, quantisation=False))
 
 
 @pytest.mark.parametrize("poles", [1, 2])
@@ -551,6 +557,16 @@ def test_no_reading_leaves_the_range(name):
         assert readings.min() >= -limited.range
     free = Accelerometer(part.scaled(1.0, AccelerometerErrors(saturation=False)), Streams(8), unit="ideal")
     assert _fly(free, lambda t: (0.0, 3 * part.range, 0.0), 0.2)[-1, 2] == pytest.approx(3 * part.range, rel=0.02)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_each_axis_ends_at_the_range_by_itself(axis, sign):
+    """A little beyond on one axis, nothing on the others."""
+    force = tuple(sign * 1.01 * SILENT.range if i == axis else 0.0 for i in range(3))
+    reading = _fly(Accelerometer(SILENT, Streams(8), unit="ideal"), lambda t: force, 0.01)[-1, 1:]
+    assert reading[axis] == pytest.approx(sign * SILENT.range, rel=1e-9)
+    assert np.delete(reading, axis).tolist() == [0.0, 0.0]
 
 
 def test_quantisation_error_is_uniform():

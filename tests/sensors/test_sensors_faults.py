@@ -61,13 +61,14 @@ def test_stuck_from_the_start_repeats_the_first_value():
 
 
 def test_spikes_are_of_either_sign_on_the_stated_share():
-    """p = 0.2 of 1000, half of each sign: within 5 sd."""
-    arrived = _arrived(Fault("spike", probability=0.2, size=50.0, axis="x"))
-    added = np.array([reading[1] - sent[1] for reading, sent in zip(arrived, READINGS, strict=True)])
-    assert set(np.round(added, 9)) == {-50.0, 0.0, 50.0}
-    assert np.mean(added != 0) == pytest.approx(0.2, abs=5 * np.sqrt(0.16 / 1000))
-    assert np.mean(added[added != 0] > 0) == pytest.approx(0.5, abs=5 * np.sqrt(0.25 / 150))
-    assert [reading[2:] for reading in arrived] == [sent[2:] for sent in READINGS]
+    """p = 0.4 of 10 000, half of each sign: both within 5 sd, 0.025 and 0.04."""
+    readings = [(0.01 * k, 0.0, 1.0, 2.0) for k in range(10_000)]
+    arrived = _arrived(Fault("spike", probability=0.4, size=50.0, axis="x"), readings=readings)
+    added = np.array([x for _, x, _, _ in arrived])
+    assert set(added) == {-50.0, 0.0, 50.0}
+    assert np.mean(added != 0) == pytest.approx(0.4, abs=0.025)
+    assert np.mean(added[added != 0] > 0) == pytest.approx(0.5, abs=0.04)
+    assert [reading[2:] for reading in arrived] == [sent[2:] for sent in readings]
 
 
 def test_offset_is_added():

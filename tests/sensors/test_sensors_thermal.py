@@ -57,6 +57,13 @@ def test_at_the_reference_temperature_without_self_heating_it_is_exactly_there()
     assert {die.step(float(t), REFERENCE_TEMPERATURE) for t in range(100)} == {REFERENCE_TEMPERATURE}
 
 
+def test_what_the_air_does_at_one_instant_the_die_does_not_follow_yet():
+    die = Die(ThermalSettings(self_heating=5.0, lag=30.0))
+    before = die.step(10.0, AIR)
+    assert die.step(10.0, AIR + 20.0) == pytest.approx(before, abs=1e-9)
+    assert die.step(40.0, AIR + 20.0) == pytest.approx(before + 20.0 * (1 - np.exp(-1)), abs=1e-6)
+
+
 def test_air_that_is_no_number_is_forgotten():
     die = Die(ThermalSettings(self_heating=5.0, lag=30.0))
     die.step(0.0, AIR)
