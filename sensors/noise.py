@@ -1,4 +1,4 @@
-"""Noise processes: white, behind a low-pass, Gauss-Markov, flicker, random walk, and noise limited to a band.
+"""Noise processes: white, behind a low-pass, Gauss-Markov, flicker, random walk.
 
     white            w_k = σ ξ_k                                         σ = n √(ENBW) for a one-sided density n
     shaped           the same behind one or two discrete poles of unit gain at f = 0
@@ -9,7 +9,7 @@
 with ξ standard normal. Gauss-Markov, flicker and random walk start at zero: what a unit is off by when it is switched
 on is its turn-on offset, drift is what comes after. White noise, shaped or not, is stationary from its first sample.
 
-All but the last are endless sequences of blocks, arrays of shape (BLOCK, axes), so that a sensor needs no
+All are endless sequences of blocks, arrays of shape (BLOCK, axes), so that a sensor needs no
 duration and an hour costs no memory; `rows` turns their sum into plain Python lists, one per sample, which is
 the cheapest thing that a loop in CPython can read. The size of a block does not depend on anything: the first
 samples of a stream are the same whatever is drawn later.
@@ -18,9 +18,9 @@ Source: IEEE Std 952 (Allan variance terms); Brown & Hwang, "Introduction to Ran
 Oppenheim & Schafer, "Discrete-Time Signal Processing", ch. 7 (Butterworth by the bilinear transform).
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from functools import reduce
-from itertools import chain, pairwise
+from itertools import chain
 from math import ceil, inf, log, pi, sin, sqrt, tan
 from typing import Any
 
@@ -172,7 +172,7 @@ def flicker(
     _positive(dt=dt, shortest=shortest, longest=longest)
     if not shortest < longest:
         raise ValueError(f"longest must be above shortest, {shortest:g} s, not {longest:g} s")
-    times, ratio = _correlation_times(shortest, longest)
+    times, ratio = correlation_times(shortest, longest)
     return _sum_of_gauss_markov(generator, instability * sqrt(log(ratio) / pi), times, dt, axes)
 
 
@@ -210,7 +210,7 @@ def drift(
     return flicker(generator, instability, dt, axes, correlation_time / FLICKER_SPAN, correlation_time * FLICKER_SPAN)
 
 
-def _correlation_times(shortest: float, longest: float) -> tuple[Array, float]:
+def correlation_times(shortest: float, longest: float) -> tuple[Array, float]:
     """Return correlation times from the shortest to the longest and the ratio from one to the next, 4 at most."""
     span = log(longest) - log(shortest)
     ratios = max(1, ceil(span / log(FLICKER_RATIO) - 1e-9))
@@ -327,128 +327,6 @@ def _filtered(generator: np.random.Generator, sd: Array, low_pass: Filter) -> It
         driven = generator.standard_normal((1, sd.size, CHUNK, CHUNK)) * sd[:, np.newaxis, np.newaxis]
         noise, state = recursion.run(driven, state)
         yield noise[0].T
-
-
-def band_limited(generator: np.random.Generator, count: int, dt: float, band: tuple[float, float], axes: int) -> Array:
-    """Return noise with a flat spectrum inside a band and nothing outside, of rms exactly 1 on each axis.
-
-    Drawn in the frequency domain, so it is periodic: its end joins its beginning without a step.
-
-    Parameters
-    ----------
-    generator : numpy.random.Generator
-    count : int
-        Number of samples, the period.
-    dt : float
-        Time between samples, s.
-    band : tuple of float
-        Lower and upper edge, Hz, both inside.
-    axes : int
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (count, axes).
-
-    Raises
-    ------
-    ValueError
-        If the band reaches half the sample rate or holds no line of the spectrum.
-    """
-    low, high = band
-    frequency = np.fft.rfftfreq(count, dt)
-    inside = (frequency >= low) & (frequency <= high)
-    if not 0.0 < low < high < 0.5 / dt or not inside.any():
-        raise ValueError(f"band_hz {low:g} to {high:g} must lie above 0 and below half the step rate, {0.5 / dt:g} Hz")
-    spectrum = np.zeros((frequency.size, axes), dtype=complex)
-    spectrum[inside] = generator.standard_normal((int(inside.sum()), axes, 2)) @ (1.0, 1.0j)
-    noise = np.fft.irfft(spectrum, count, axis=0)
-    unit: Array = noise / np.sqrt(np.mean(noise**2, axis=0))
-    return unit
-
-
-def spectral(
-    generator: np.random.Generator, count: int, dt: float, psd: Sequence[tuple[float, float]], axes: int
-) -> Array:
-    """Return normal noise of a given power spectral density, periodic like `band_limited`.
-
-    Each line of the spectrum carries, on the average, what the density has between the midpoints to its neighbours, so
-    the mean square is on the average the integral of the density, however narrow it is.
-
-    Parameters
-    ----------
-    generator : numpy.random.Generator
-    count : int
-        Number of samples, even, the period.
-    dt : float
-        Time between samples, s.
-    psd : sequence of (float, float)
-        Frequency, Hz, and one-sided density there, unit²/Hz; straight lines in log-log between, nothing outside.
-    axes : int
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (count, axes).
-
-    Raises
-    ------
-    ValueError
-        As `check_psd`.
-    """
-    check_psd("psd", psd, 0.5 / dt)
-    last = count // 2  # this line, at half the sample rate, and that at zero have no phase: they stay empty
-    edges = np.arange(0.5, last) / (count * dt)
-    edges[0], edges[-1] = 0.0, inf
-    power = np.diff(power_below(psd, edges))
-    drawn = generator.standard_normal((power.size, axes, 2)) @ (1.0, 1.0j)
-    spectrum = np.zeros((last + 1, axes), dtype=complex)
-    spectrum[1:last] = drawn * (0.5 * count * np.sqrt(power))[:, np.newaxis]
-    noise: Array = np.fft.irfft(spectrum, count, axis=0)
-    return noise
-
-
-def check_psd(name: str, psd: Sequence[tuple[float, float]], half_rate: float) -> None:
-    """Refuse what is no one-sided power spectral density below `half_rate`, Hz.
-
-    Raises
-    ------
-    ValueError
-        In one line that begins with `name`: fewer than two points, frequencies that do not rise or are not between 0
-        and `half_rate`, densities that are not above 0.
-    """
-    if len(psd) < 2:
-        raise ValueError(f"{name}: must have at least 2 points (frequency, density), not {len(psd)}")
-    for frequency, density in psd:
-        if not 0.0 < frequency < half_rate:
-            raise ValueError(f"{name}: frequencies must lie above 0 and below {half_rate:g} Hz, not {frequency:g}")
-        if not 0.0 < density < inf:
-            raise ValueError(f"{name}: densities must be above 0 and finite, not {density:g} at {frequency:g} Hz")
-    for (lower, _), (upper, _) in pairwise(psd):
-        if not lower < upper:
-            raise ValueError(f"{name}: frequencies must rise, not go from {lower:g} to {upper:g} Hz")
-
-
-def power_below(psd: Sequence[tuple[float, float]], frequency: ArrayLike) -> Array:
-    """Return the integral of a density that is straight in log-log, up to each frequency, Hz: the mean square there."""
-    frequency = np.asarray(frequency, dtype=float)
-    total = np.zeros_like(frequency)
-    for (f0, s0), (f1, s1) in pairwise(psd):
-        total += _power_between(f0, s0, f1, s1, np.clip(frequency, f0, f1))
-    return total
-
-
-def _power_between(f0: float, s0: float, f1: float, s1: float, f: Array) -> Array:
-    """Return ∫ S df from f0 to f, S = s0 (f/f0)^m: (S f - s0 f0)/(m + 1), or s0 f0 ln(f/f0) where m + 1 = 0."""
-    span = log(f1) - log(f0)
-    slope = (log(s1) - log(s0)) / span if span > 1e-9 else 0.0  # that narrow, a line of any slope is a step
-    nepers = np.log(f) - log(f0)
-    x = (slope + 1.0) * nepers
-    flat = np.abs(x) < 1.0  # where the difference of the first form loses digits
-    growth = np.divide(np.expm1(x), x, out=np.ones_like(x), where=flat & (x != 0.0))
-    steep = np.exp(log(s0) + slope * nepers) * f - s0 * f0
-    power: Array = np.where(flat, s0 * f0 * nepers * growth, steep / (slope + 1.0 if slope != -1.0 else 1.0))
-    return power
 
 
 class _Recursion:

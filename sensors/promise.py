@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sensors import allan
 from sensors.accelerometer_description import AccelerometerDescription
-from sensors.noise import FLICKER_SPAN, _correlation_times
+from sensors.noise import FLICKER_SPAN, correlation_times
 from sensors.pressure_description import PressureDescription
 
 Array = NDArray[np.float64]
@@ -207,7 +207,7 @@ def _drifts(d: Description) -> tuple[tuple[float, float], ...]:
     """Standard deviations and correlation times of the Gauss-Markov processes that the drift is drawn from."""
     if d.errors.drift_model == "gauss-markov":
         return ((d.drift_sd, d.correlation_time),)
-    times, ratio = _correlation_times(d.correlation_time / FLICKER_SPAN, d.correlation_time * FLICKER_SPAN)
+    times, ratio = correlation_times(d.correlation_time / FLICKER_SPAN, d.correlation_time * FLICKER_SPAN)
     sd = allan.INSTABILITY * d.drift_sd * sqrt(log(ratio) / pi)
     return tuple((sd, float(time)) for time in times)
 

@@ -18,8 +18,9 @@ from math import ceil, inf, isfinite, pi, radians
 import numpy as np
 from numpy.typing import NDArray
 
-from sensors.noise import BLOCK, band_limited, check_psd, spectral
+from sensors.noise import BLOCK
 from sensors.settings import Phase, Tone, VibrationSettings
+from sensors.spectrum import band_limited, check_psd, spectral
 from sensors.streams import Streams
 from sensors.unit import G0
 
