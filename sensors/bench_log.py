@@ -142,7 +142,9 @@ def read_bench_log(
         good = np.isfinite(values).all(axis=1)
         dropped, values = int(np.count_nonzero(~good)), values[good]
         return _evenly(path.name, names, values, dropped)
-    except (ValueError, UnicodeDecodeError) as error:
+    except (FileNotFoundError, IsADirectoryError) as error:
+        raise ValueError(f"{path}: there is no such file") from error
+    except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 
 

@@ -15,6 +15,8 @@ import typer
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sensors import presets, record_at_rest
+from sensors.catalogue import FOLDER
 from uavsim import __version__, cli, cosim
 from uavsim.flight import UNITS, load
 from uavsim.scenario import packaged
@@ -104,7 +106,75 @@ def test_scenarios_are_a_line_each(run: Run) -> None:
 def test_sensors_are_a_line_each(run: Run) -> None:
     result = run("sensors")
     assert (result.status, result.err) == (0, "")
-    assert [line.split()[0] for line in result.out.splitlines()] == ["adxl345", "bmp390", "bmp581", "lsm6dso32"]
+    assert [line.split()[0] for line in result.out.splitlines()] == presets()
+
+
+BENCH = {"allan.png", "psd.png", "histogram.png", "bench.json"}
+
+
+def test_a_part_on_the_bench(run: Run, tmp_path: Path) -> None:
+    """Preset, figures and table; a second one goes beside it; the numbers are those of the record at rest."""
+    first = run("sensors", "bmp390", "--hours", "0.05")
+    assert (first.status, first.err) == (0, "")
+    assert first.out.startswith("bmp390: ")
+    assert "bmp390 on the bench: mode x1/x1, 200 Hz, filter off" in first.out
+    assert first.out.endswith("written to output/sensors-bmp390\n")
+    assert written(tmp_path / "output" / "sensors-bmp390") == BENCH
+    assert max(map(len, first.out.split("\n\n", 1)[1].splitlines())) <= 80
+    second = run("sensors", "bmp390", "--hours", "0.01", "--no-plots", "--seed", "2")
+    assert second.out.endswith("written to output/sensors-bmp390-2\n")
+    assert written(tmp_path / "output" / "sensors-bmp390-2") == {"bench.json"}
+    numbers = json.loads((tmp_path / "output" / "sensors-bmp390" / "bench.json").read_text(encoding="utf-8"))
+    record = record_at_rest("bmp390", duration=180.0, seed=1)
+    assert numbers["simulated"]["pressure"]["count"] == len(record)
+    assert numbers["simulated"]["pressure"]["mean"] == pytest.approx(record["pressure"].mean(), rel=1e-12)
+
+
+def test_a_log_is_laid_over_a_part(run: Run, tmp_path: Path) -> None:
+    log = record_at_rest("adxl345", duration=30.0, seed=5, rate=100.0)
+    log[["fx", "fy", "fz"]] /= 9.80665
+    log.columns = ["time s", "ax[0]", "ax[1]", "ax[2]"]
+    log.to_csv(tmp_path / "mine.csv", index=False)
+    names = "t=time s, fx=ax[0]*9.80665, fy=ax[1]*9.80665, fz=ax[2]*9.80665"
+    bench = ("sensors", "adxl345", "--hours", "0.01", "--compare", "mine.csv", "--out", "here")
+    result = run(*bench, "--map", names)
+    assert (result.status, result.err) == (0, "")
+    assert "mine.csv: 0.00833 h at 100 Hz" in result.out
+    assert written(tmp_path / "here") == BENCH
+    numbers = json.loads((tmp_path / "here" / "bench.json").read_text(encoding="utf-8"))
+    assert numbers["compared"]["channels"]["fz"]["mean"] == pytest.approx(-9.8, abs=1.0)
+    assert numbers["compared"]["remarks"] == []
+
+
+def test_a_bench_takes_the_settings_of_its_part(run: Run, tmp_path: Path) -> None:
+    run("sensors", "lsm6dso32", "--hours", "0.01", "--range-g", "4", "--rate", "104", "--unit", "ideal", "--out", "a")
+    run("sensors", "bmp581", "--hours", "0.01", "--mode", "x1/x1", "--iir", "3", "--noise-scale", "3", "--out", "b")
+    a, b = (json.loads((tmp_path / name / "bench.json").read_text(encoding="utf-8")) for name in "ab")
+    assert (a["setting"], a["unit"]) == ("±4 g, 104 Hz, filter rate/2", "ideal")
+    assert abs(a["simulated"]["fx"]["mean"]) < 0.01
+    assert b["setting"] == "mode x1/x1, 498 Hz, filter coefficient 3"
+    assert b["promised"]["pressure"]["N"] == pytest.approx(3.0 * 0.78 / 498**0.5, rel=1e-3)
+
+
+def test_a_bench_may_be_written_over_only_if_that_is_asked_for(run: Run, tmp_path: Path) -> None:
+    arguments = ("sensors", "bmp390", "--hours", "0.01", "--no-plots", "--out", "here")
+    (tmp_path / "here").mkdir()
+    assert run(*arguments).status == 0
+    before = (tmp_path / "here" / "bench.json").read_bytes()
+    refused = run(*arguments, "--seed", "2")
+    assert (refused.status, refused.out) == (2, "")
+    assert "here is not empty" in refused.err
+    (tmp_path / "here" / "mine.txt").touch()
+    assert run(*arguments, "--seed", "2", "--overwrite").status == 0
+    assert (tmp_path / "here" / "bench.json").read_bytes() != before
+    assert written(tmp_path / "here") == {"bench.json", "mine.txt"}
+
+
+def test_a_part_of_ones_own(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_bytes((FOLDER / "bmp390.toml").read_bytes())
+    result = run("sensors", "mine.toml", "--hours", "0.01", "--no-plots")
+    assert (result.status, result.err) == (0, "")
+    assert result.out.endswith("written to output/sensors-mine\n")
 
 
 def test_a_first_flight(run: Run, tmp_path: Path) -> None:
@@ -234,6 +304,39 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
         ("replay", "Missing argument"),
         ("sensors bmp39", "nearest: bmp390"),
         ("sensors ../sensors", "preset '../sensors' is unknown"),
+        ("sensors properties.toml", "properties.toml: "),
+        ("sensors bmp390 --hours -1", "--hours: -1.0: give a number of hours above 0, at most 1000"),
+        ("sensors bmp390 --hours nan", "--hours: nan: give a number"),
+        ("sensors bmp390 --hours inf", "--hours: inf: give a number"),
+        ("sensors bmp390 --hours 1e-5", "--hours: 1e-05 h are too short: give at least 0.00018 at 200 Hz"),
+        ("sensors bmp390 --hours x", "--hours"),
+        ("sensors bmp390 --seed -1", "--seed"),
+        ("sensors bmp390 --unit best", "--unit 'best' is unknown"),
+        ("sensors bmp390 --rate 100", "bmp390 is a pressure sensor and has no rate"),
+        ("sensors bmp390 --iir 5", "bmp390: iir 5 is unknown; nearest: "),
+        ("sensors adxl345 --mode x1/x1", "adxl345 is an accelerometer and has no mode"),
+        ("sensors adxl345 --range-g 3", "range_g 3.0 is unknown; nearest: "),
+        ("sensors adxl345 --rate 801", "rate 801.0 is unknown; nearest: 800"),
+        ("sensors adxl345 --filter none", "filter 'none' is unknown; nearest: rate/2"),
+        ("sensors adxl345 --noise-scale -1", "noise_scale must be a number from 0 to 1000, not -1.0"),
+        ("sensors adxl345 --noise-scale nan", "noise_scale must be a number"),
+        ("sensors adxl345 --map t=time", "--map: names columns of a log: give --compare, too"),
+        ("sensors --compare log.csv", "--compare: name the part to compare with"),
+        ("sensors adxl345 --compare nothing.csv", "--compare: nothing.csv: there is no such file"),
+        ("sensors adxl345 --compare full", "--compare: full: there is no such file"),
+        ("sensors adxl345 --compare log.csv", "log.csv: lacks t, fx, fy, fz; it has time, ax, p; say which"),
+        (
+            "sensors bmp390 --compare log.csv --map t=time",
+            "lacks pressure; it has time, ax, p; say which is which with",
+        ),
+        ("sensors bmp390 --compare log.csv --map t=time,pressure=q", "has no column 'q'; it has time, ax, p"),
+        ("sensors bmp390 --compare log.csv --map t=time,pressure=p", "2 rows of numbers are too few; at least 1000"),
+        ("sensors bmp390 --compare log.csv --map t=time,fx=p", "'fx' is no column of ours; they are t, pressure"),
+        ("sensors bmp390 --compare log.csv --map time", "'time': give it as ours=theirs"),
+        ("sensors bmp390 --compare binary", "binary: "),
+        ("sensors bmp390 --compare file", "file: not a table of comma-separated values"),
+        ("sensors bmp390 --out full", "full is not empty"),
+        ("sensors bmp390 --out file", "file is a file, not a folder"),
         ("bench nothing", "unknown scenario 'nothing'"),
         ("bench weak-launch", "nothing to compare"),
         ("flie", "No such command 'flie'"),
@@ -250,6 +353,7 @@ def test_wrong_input_is_2_with_one_line_and_nothing_written(
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken" / "broken.xml").write_text("<fdm_config")
     (tmp_path / "properties.toml").write_text("[aircraft.properties]\nNAME = 1\n")
+    (tmp_path / "log.csv").write_text("time, ax, p\n0, 1, 2\n1, 1, 2\n")
     before = set(tmp_path.rglob("*"))
     result = run(*arguments.split(" "))
     assert (result.status, result.out) == (2, "")
@@ -387,6 +491,16 @@ def test_ctrl_c_before_anything_is_finished_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_ctrl_c_on_the_bench_leaves_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli._Bar, "show", interrupt)
+    result = run("sensors", "bmp390", "--hours", "0.1")
+    assert (result.status, result.err) == (130, "")
+    assert list(tmp_path.iterdir()) == []
+
+
 # -- other people's ends of the pipe ---------------------------------------------------------------------------------
 
 MAIN = "from uavsim.cli import main\nmain()"
@@ -397,7 +511,7 @@ MAIN = "from uavsim.cli import main\nmain()"
     [
         (("scenarios",), 0),
         (("--help",), 0),
-        (("sensors", "bmp390"), 0),
+        (("sensors", "bmp390", "--hours", "0.01", "--no-plots"), 0),
         (("fly", *SHORT, "--out", "here"), 0),
         (("fly", *SHORT, "--set", "expect=cruise", "--out", "here"), 1),
     ],
@@ -415,7 +529,7 @@ def test_a_reader_that_leaves_costs_nothing(tmp_path: Path, arguments: tuple[str
 
 def test_a_terminal_without_greek_is_no_reason_to_fail(tmp_path: Path) -> None:
     code = "import os, sys\nsys.stdout.reconfigure(encoding='ascii')\n" + MAIN
-    plain = process(code, tmp_path, "sensors", "bmp390")
+    plain = process(code, tmp_path, "sensors", "bmp390", "--hours", "0.01", "--no-plots")
     out, err = plain.communicate(timeout=60)
     assert (plain.returncode, err) == (0, "")
     assert out.isascii()

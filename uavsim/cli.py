@@ -242,6 +242,10 @@ def sensors(
     from uavsim.views import datasheets, terminal
 
     if name is None:
+        if compare is not None:
+            raise typer.BadParameter(
+                "name the part to compare with, as in uavsim sensors bmp390", param_hint="--compare"
+            )
         datasheets.print_presets()
         return
     from sensors.bench import UNITS, on_bench

@@ -277,7 +277,7 @@ def test_a_fit_finds_what_an_exact_curve_was_made_of(N, B, K, Q, time, pole):
         assert fit.correlation_time == pytest.approx(time, rel=0.1)
     expected = inf if pole == 0.0 else 100.0 * np.arccos(1.0 - (1.0 - pole) ** 2 / (2.0 * pole)) / (2.0 * pi)
     assert fit.bandwidth == pytest.approx(expected, rel=0.05)
-    assert fit.deviation(TAU) == pytest.approx(np.sqrt(variance), rel=0.01)
+    assert fit.deviation(TAU) == pytest.approx(np.sqrt(variance), rel=0.03)
 
 
 def drawn(name, generator, dt):
@@ -407,7 +407,7 @@ def settings_of(name, *, every):
         {"rate": rate, "filter": own, "range_g": range_g}
         for f, own in enumerate(part.filters)
         for r, rate in enumerate(part.rates)
-        if part.bandwidths[f][r]
+        if part.bandwidths[f][r] and (f == 0 or rate in (part.rates[0], part.rate, part.rates[-1]))
         for range_g in (part.ranges_g if rate == part.rate and own == part.filter else part.ranges_g[-1:])
     ]
 
@@ -466,7 +466,7 @@ def test_a_part_as_a_whole_has_its_datasheets_n_at_three_rates_or_modes(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", presets())
 def test_a_part_as_a_whole_has_its_datasheets_n_in_every_setting(name):
-    """As above over the full grid of rates, filters, ranges or modes.
+    """As above over all modes; over all rates, all ranges, and all filters at the slowest, default and fastest rate.
 
     But where a low-pass leaves less noise than half a step: rounding is then no noise of its own, nor is it promised.
     """
