@@ -14,6 +14,7 @@ computer: a spike is not bounded by the range and needs not be a multiple of the
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, repeat
 from math import nan
+from typing import cast
 
 import numpy as np
 
@@ -21,10 +22,11 @@ from sensors.noise import BLOCK
 from sensors.settings import Fault
 from sensors.streams import Streams
 
-Values = tuple[float, ...]
+Stamped = tuple[float, ...]
+"""Time stamp, s, and one value or three."""
 Reading = tuple[float, float, float, float]
-Hit = Callable[[float, Values], Values | None]
-"""Time stamp and values of a reading to its values, or None if there is none."""
+Hit = Callable[[Stamped], Stamped | None]
+"""What was sent to what arrives, None if that is nothing."""
 
 
 def reading_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Callable[[Reading], Reading | None] | None:
@@ -38,21 +40,7 @@ def reading_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Call
     name : str
         Of the sensor.
     """
-    hit = _all_faults(faults, streams, name)
-    if hit is None:
-        return None
-
-    def arriving(reading: Reading) -> Reading | None:
-        values = reading[1:]
-        hurt = hit(reading[0], values)
-        if hurt is values:
-            return reading
-        if hurt is None:
-            return None
-        x, y, z = hurt
-        return reading[0], x, y, z
-
-    return arriving
+    return cast("Callable[[Reading], Reading | None] | None", _all_faults(faults, streams, name))
 
 
 def value_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Callable[[float, float], float | None] | None:
@@ -65,8 +53,8 @@ def value_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Callab
         return None
 
     def arriving(t: float, value: float) -> float | None:
-        hurt = hit(t, (value,))
-        return None if hurt is None else hurt[0]
+        hurt = hit((t, value))
+        return None if hurt is None else hurt[1]
 
     return arriving
 
@@ -76,12 +64,12 @@ def _all_faults(faults: Sequence[Fault], streams: Streams, name: str) -> Hit | N
     if len(hits) < 2:
         return hits[0] if hits else None
 
-    def one_after_the_other(t: float, values: Values) -> Values | None:
-        hurt: Values | None = values
+    def one_after_the_other(sent: Stamped) -> Stamped | None:
+        hurt: Stamped | None = sent
         for hit in hits:
             if hurt is None:
                 break
-            hurt = hit(t, hurt)
+            hurt = hit(hurt)
         return hurt
 
     return one_after_the_other
@@ -92,59 +80,60 @@ def _uniform(generator: np.random.Generator) -> Iterator[float]:
     return chain.from_iterable(generator.random(BLOCK).tolist() for _ in repeat(None))
 
 
-def _concerned(fault: Fault, values: Values) -> Iterator[tuple[bool, float]]:
-    """Yield each value with whether the fault is on its axis; a single value is on any."""
-    everywhere = fault.axis == "all" or len(values) == 1
-    for axis, value in zip("xyz", values, strict=False):
-        yield everywhere or axis == fault.axis, value
+def _concerned(fault: Fault, sent: Stamped) -> Iterator[tuple[bool, float]]:
+    """Yield the time stamp and each value with whether the fault is on it; a single value is on any axis."""
+    everywhere = fault.axis == "all" or len(sent) == 2
+    for place, value in zip("txyz", sent, strict=False):
+        yield place != "t" and (everywhere or place == fault.axis), value
 
 
 def _dropout(fault: Fault, uniform: Iterator[float]) -> Hit:
-    def hit(t: float, values: Values) -> Values | None:
-        return None if fault.start <= t < fault.stop and next(uniform) < fault.probability else values
+    def hit(sent: Stamped) -> Stamped | None:
+        return None if fault.start <= sent[0] < fault.stop and next(uniform) < fault.probability else sent
 
     return hit
 
 
 def _invalid(fault: Fault, uniform: Iterator[float]) -> Hit:
-    def hit(t: float, values: Values) -> Values:
-        if fault.start <= t < fault.stop and next(uniform) < fault.probability:
-            return tuple(nan if on else value for on, value in _concerned(fault, values))
-        return values
+    def hit(sent: Stamped) -> Stamped:
+        if fault.start <= sent[0] < fault.stop and next(uniform) < fault.probability:
+            return tuple(nan if on else value for on, value in _concerned(fault, sent))
+        return sent
 
     return hit
 
 
 def _spike(fault: Fault, uniform: Iterator[float]) -> Hit:
-    def hit(t: float, values: Values) -> Values:
-        if not fault.start <= t < fault.stop:
-            return values
+    def hit(sent: Stamped) -> Stamped:
+        if not fault.start <= sent[0] < fault.stop:
+            return sent
         drawn = next(uniform)
         if drawn >= fault.probability:
-            return values
+            return sent
         size = fault.size if drawn < 0.5 * fault.probability else -fault.size
-        return tuple(value + size if on else value for on, value in _concerned(fault, values))
+        return tuple(value + size if on else value for on, value in _concerned(fault, sent))
 
     return hit
 
 
 def _offset(fault: Fault, _uniform: Iterator[float]) -> Hit:
-    def hit(t: float, values: Values) -> Values:
-        if fault.start <= t < fault.stop:
-            return tuple(value + fault.size if on else value for on, value in _concerned(fault, values))
-        return values
+    def hit(sent: Stamped) -> Stamped:
+        if fault.start <= sent[0] < fault.stop:
+            return tuple(value + fault.size if on else value for on, value in _concerned(fault, sent))
+        return sent
 
     return hit
 
 
 def _stuck(fault: Fault, _uniform: Iterator[float]) -> Hit:
-    held: Values | None = None  # what it was before; if there was nothing, the first that comes
+    held: Stamped | None = None  # what it was before; if there was nothing, the first that comes
 
-    def hit(t: float, values: Values) -> Values:
+    def hit(sent: Stamped) -> Stamped:
         nonlocal held
-        if held is None or not fault.start <= t < fault.stop:
-            held = values
-        pairs = zip(_concerned(fault, values), held, strict=True)
+        if held is None or not fault.start <= sent[0] < fault.stop:
+            held = sent
+            return sent
+        pairs = zip(_concerned(fault, sent), held, strict=True)
         return tuple(before if on else value for (on, value), before in pairs)
 
     return hit

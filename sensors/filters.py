@@ -126,9 +126,9 @@ class History:
         whole = int(steps)
         if whole > self._last:
             steps = whole = self._last
-        w = steps - whole
-        x, y, z = past[-1 - whole]
-        ox, oy, oz = past[-2 - whole]
+        w, place = steps - whole, -1 - whole
+        x, y, z = past[place]
+        ox, oy, oz = past[place - 1]
         return x + w * (ox - x), y + w * (oy - y), z + w * (oz - z)
 
     def mean(self, window: float, age: float) -> Triple:
