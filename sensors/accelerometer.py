@@ -5,26 +5,26 @@ Continuous, at the plant's steps and linear between them:
     u = Rᵀ (f + v)                                 vibration v is felt like everything else; R: attitude of the case
     c = (I + C) (u + k₂ u² + k₃ u³)                nonlinearity, each axis: k₂ rectifies vibration; cross-axis
     h = low-pass(c)                                one or two poles, exact (`sensors.filters`)
-    z_k = h(t_k - d - δ_k)                         age d of the signal at its time stamp, with jitter δ
+    z_k = h(t_k - D - δ_k)                         age D of the signal at its time stamp, with jitter δ
     t_k = φ + k/(f₀ (1 + e)) + j_k                 its own clock, sampled at any instant (`sensors.clock`)
 
-or, of a part with poles = 0, z_k = mean of c over the interval 1/(f₀ (1 + e)) that ends at t_k - d - δ_k. Each sample:
+or, of a part with poles = 0, z_k = mean of c over the interval 1/(f₀ (1 + e)) that ends at t_k - D - δ_k. Each sample:
 
     y = (1 + s + s' ΔT) z + b + b' ΔT + d_k + r_k + w_k       ΔT: die above 25 °C (`sensors.thermal`)
     reading = q round(clip(y / q))                 two's complement: -2^(n-1) … 2^(n-1) - 1 steps
     fault(reading)                                 dropout, invalid, stuck, spike, offset (`sensors.faults`)
 
-with scale error s, cross-axis sensitivity C (no diagonal; it commutes with what is between it and the scale, which is
-the same for all axes), turn-on bias b, temperature coefficients s' and b', drift d
-(Gauss-Markov or flicker), random walk r and least significant bit q. White noise w is that of the datasheet's density
-behind the part's low-pass at the output rate. A part whose low-pass is at half the rate has a steep decimation filter;
-in the signal path it is given one pole at the same -3 dB frequency, which costs a comparable delay, and the noise has
-the variance that the steep filter leaves, σ = n √(rate/2). k₃ follows from the datasheet's nonlinearity, the greatest
+with scale error s, cross-axis sensitivity C (no diagonal; low-pass and delay are the same for all axes, so it may as
+well stand before them), turn-on bias b, temperature coefficients s' and b', drift d (Gauss-Markov or flicker), random
+walk r and least significant bit q. White noise w is that of the datasheet's density behind the part's low-pass at the
+output rate. A part whose low-pass is at half the rate has a steep decimation filter; in the signal path it is given one
+pole at the same -3 dB frequency, which costs a comparable delay, and the noise has the variance that the steep filter
+leaves, σ = n √(rate/2). k₃ follows from the datasheet's nonlinearity, the greatest
 deviation from the best straight line as a share of the range R: k₃ u³ is off by k₃ R³/4 from its best line (the
 Chebyshev polynomial of third order), so k₃ = 4 share/R².
 
-What is not a number is read as such and forgotten as soon as the truth is one again. A term that is off draws nothing
-from another's stream.
+What is not a number is read as such, and forgotten two readings (or steps of the plant) after the truth is one again,
+the delay on top. A term that is off draws nothing from another's stream.
 
 From scale on everything is kept in counts (units of q), and bias, drift and noise are summed beforehand, a block at a
 time: a sample is then an interpolation, a gain and an addition. The die's temperature is looked at once a block, about
