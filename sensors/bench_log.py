@@ -46,7 +46,7 @@ class BenchLog:
         The file's.
     columns : tuple of str
         t and what was asked for and found.
-    values : numpy.ndarray
+    table : numpy.ndarray
         Shape (n, len(columns)); t in s.
     rate : float
         Readings a second, Hz.
@@ -62,7 +62,7 @@ class BenchLog:
 
     name: str
     columns: tuple[str, ...]
-    values: Array
+    table: Array
     rate: float
     dropped: int
     gaps: int
@@ -73,7 +73,7 @@ class BenchLog:
     @property
     def duration(self) -> float:
         """From the first to the last reading, s."""
-        return float(self.values[-1, 0] - self.values[0, 0])
+        return float(self.table[-1, 0] - self.table[0, 0])
 
     def remarks(self) -> list[str]:
         """Say what was not as it should be, a sentence each."""
@@ -159,7 +159,7 @@ def _table(path: Path) -> "pd.DataFrame":
             path, sep=separator, comment="#", skipinitialspace=True, encoding="utf-8-sig", low_memory=False
         )
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        raise ValueError(f"not a table of comma-separated values ({error})") from error
+        raise ValueError(f"not a table of comma-separated values ({str(error).strip()})") from error
     return frame.rename(columns=lambda name: str(name).strip())
 
 
@@ -183,7 +183,9 @@ def _sources(
 def _with_factor(source: Source, found: Sequence[str]) -> Source:
     """Split a factor off a name that is not itself a column."""
     match = None if source.column in found else NUMBER.fullmatch(source.column)
-    return source if match is None else Source(match[1].strip(), float(match[2]))
+    if match is None or match[1].strip() not in found:
+        return source
+    return Source(match[1].strip(), float(match[2]))
 
 
 def _listed(names: Sequence[str], most: int = 12) -> str:
@@ -227,7 +229,7 @@ def _evenly(name: str, columns: tuple[str, ...], values: Array, dropped: int) ->
     return BenchLog(
         name=name,
         columns=columns,
-        values=even,
+        table=even,
         rate=1.0 / usual,
         dropped=dropped,
         gaps=int(np.count_nonzero(gap)),

@@ -41,6 +41,7 @@ BANDS = 24  # a decade of frequency
 OVERLAP_BAND = 0.1  # share of a level's rate up to which its means have the density of the readings
 NEAR = 3  # points on each side by which a slope is told
 BINS, SPAN = 10, 5.0  # bins a standard deviation, where the readings' own steps are finer; half width in such
+NARROWEST = 1e-6  # bin of a record that does not move, m/s² or Pa
 GRID, OFTEN = 4096, 3  # readings by which the steps are told; how often a value must be among them
 SURE = 30.0  # degrees of freedom that an Allan deviation must have to count as the least
 FEWEST = 64  # readings below which there is nothing to say
@@ -370,7 +371,7 @@ def _histogram(values: Array, rate: float, deviation: Allan) -> Histogram:
         means = np.round(means / step) * step  # so that the grid stays
     rest = (windows - means).ravel()
     sd = float(np.sqrt(np.mean((windows - windows.mean(axis=1, keepdims=True)) ** 2)))
-    width = max(sd / BINS, np.finfo(float).tiny)
+    width = sd / BINS or NARROWEST
     if step is not None:
         width = step * (2 * int(width / step / 2.0) + 1)  # whole steps, an odd number: no reading is on an edge
     half = int(np.ceil(SPAN * sd / width)) + 0.5

@@ -127,7 +127,7 @@ def put_on_bench(
         promises=promised,
         simulated=characterise(pieces, channels, promised[0].correlation_time or "flicker"),
         log=log,
-        compared=() if log is None else characterise([log.values], channels),
+        compared=() if log is None else characterise([log.table], channels),
     )
 
 

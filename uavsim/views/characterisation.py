@@ -107,7 +107,7 @@ def histogram(bench: Bench) -> "Figure":
     """Distribution of the readings about their drift, and the Gaussian of the promised noise."""
     windows = [c.histogram.window for c in (*bench.simulated, *bench.compared)]
     span = " … ".join(dict.fromkeys(f"{window:.3g}" for window in (min(windows), max(windows))))
-    said = f"{words(bench)};  readings less their mean over {span} s, where averages are quietest"
+    said = f"{words(bench)};  less the means over {span} s"
     figure, columns = _sheet(bench, said, right=0.4)
     for axes, promise, measured in zip(columns, bench.promises, _pairs(bench), strict=True):
         for what, colour, name in measured:
@@ -143,12 +143,17 @@ def title(bench: Bench) -> str:
     return f"{bench.description.name} on the bench: {bench.setting}"
 
 
+def short(name: str, most: int = 20) -> str:
+    """Return the end of a long name."""
+    return name if len(name) <= most else f"…{name[1 - most :]}"
+
+
 def words(bench: Bench) -> str:
     """What was simulated and compared."""
     said = f"simulated: {bench.hours:g} h, seed {bench.seed}, {bench.unit} unit"
     if bench.log is None:
         return said
-    return f"{said};  {bench.log.name}: {bench.log.duration / 3600.0:.3g} h at {bench.log.rate:.4g} Hz"
+    return f"{said};  {short(bench.log.name, 24)}: {bench.log.duration / 3600.0:.3g} h at {bench.log.rate:.4g} Hz"
 
 
 def _sheet(bench: Bench, said: str, right: float = 1.9) -> "tuple[Figure, list[Axes]]":
@@ -164,7 +169,7 @@ def _pairs(bench: Bench) -> list[list[tuple[Characterisation, str, str]]]:
     pairs = [[(channel, BLUE, "simulated")] for channel in bench.simulated]
     assert bench.log is not None or not bench.compared
     for pair, channel in zip(pairs, bench.compared, strict=False):
-        pair.append((channel, RED, bench.log.name if bench.log else ""))
+        pair.append((channel, RED, short(bench.log.name) if bench.log else ""))
     return pairs
 
 

@@ -15,7 +15,7 @@ from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
 from sensors.unit import G0
 from uavsim.studies.bench import Bench
-from uavsim.views.characterisation import title, words
+from uavsim.views.characterisation import short, title, words
 from uavsim.views.terminal import _console, _print, _table, say
 
 PRESET_UNITS = {
@@ -157,7 +157,7 @@ def print_bench(bench: Bench) -> None:
     """Print what a part promises, what a simulated record of it shows, and somebody's log if there is one."""
     console = _console()
     console.print(f"\n[bold]{escape(title(bench))}[/bold]\n{escape(words(bench))}\n")
-    columns = ["", "", "promised", "simulated", *([escape(_short(bench.log.name))] if bench.log else [])]
+    columns = ["", "", "promised", "simulated", *([escape(short(bench.log.name))] if bench.log else [])]
     table = _table(columns)
     table.columns[1].justify = "left"
     scale, unit = _SCALES[bench.promises[0].unit]
@@ -174,10 +174,6 @@ def print_bench(bench: Bench) -> None:
     _print(console, table, "")
     for note in _notes(bench):
         console.print(f"Note: {escape(note)}")
-
-
-def _short(name: str, most: int = 20) -> str:
-    return name if len(name) <= most else f"…{name[1 - most :]}"
 
 
 def _figure(value: float | None) -> str:
