@@ -107,7 +107,7 @@ ACCELEROMETER: dict[str, Rule] = {
     "filters": listed(text),
     "default_filter": text,
     "bandwidth_hz": listed(listed(AT_LEAST_0)),
-    "poles": whole(1, 2),
+    "poles": whole(0, 2),  # 0 is the mean over one output interval
     "noise_density_ug": listed(AXES),
     "noise_rate_floor": AT_LEAST_0,
     "offset_mg": AXES,

@@ -271,7 +271,7 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
         ("fly --set =1", "give it as KEY=VALUE"),
         ("fly --set launcher.storke=1", "did you mean 'launcher.stroke'?"),
         ("fly --set launcher.stroke=nan", "must be a number from 0.6 to 50"),
-        ("fly --set accelerometer.preset=adxl", "nearest: adxl345"),
+        ("fly --set accelerometer.preset=adxl34", "nearest: adxl345"),
         ("fly --set air_data.total.mode=x9/x9", "allowed: x1/x1"),
         ("fly --set aircraft.model=fw9", "did you mean 'fw8'?"),
         ("fly --set aircraft.model=broken", "aircraft.model: In file"),
