@@ -22,7 +22,8 @@ rounds its readings, not their integral, adds noise of variance q²/12, white if
 far below q.
 """
 
-from math import exp, expm1, pi
+from functools import lru_cache
+from math import exp, expm1, log, pi, sqrt, tan
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,6 +109,37 @@ def drift_behind(tau: ArrayLike, correlation_time: float, interval: float, pole:
     return behind
 
 
+def decay(a: float) -> Array:
+    """Return the impulse response of y += a (x - y), down to 1e-12."""
+    response: Array = a * (1.0 - a) ** np.arange(int(28.0 / a) + 1, dtype=float)
+    return response
+
+
+def low_pass(bandwidth: float, rate: float, poles: int) -> Array:
+    """Return the impulse response of the discrete low-pass behind which an accelerometer's noise is.
+
+    Parameters
+    ----------
+    bandwidth : float
+        -3 dB frequency, below half the rate, Hz.
+    rate : float
+        Hz.
+    poles : int
+        1: y += a (x - y); 2: Butterworth by the bilinear transform.
+    """
+    if poles == 1:
+        c = 1.0 - np.cos(2.0 * np.pi * bandwidth / rate)
+        return decay(float(np.sqrt(c * c + 2.0 * c) - c))  # |H|² = a²/(a² + 2 (1 - a) c) = 1/2
+    from scipy.signal import butter, lfilter  # late: it takes half a second
+
+    b, a = butter(2, bandwidth, fs=rate)
+    slowest = float(np.max(np.abs(np.roots(a))))
+    impulse = np.zeros(int(28.0 / -log(slowest)) + 8)  # down to 1e-12
+    impulse[0] = 1.0
+    response: Array = lfilter(b, a, impulse)
+    return response
+
+
 def autocovariance(response: Array) -> Array:
     """Return R_k, k ≥ 0, of white noise of variance 1 behind a filter, from its impulse response; shape (n,)."""
     size = 2 * response.size
@@ -163,6 +195,53 @@ def correlated(tau: ArrayLike, interval: float, covariance: Array) -> Array:
 
     kept: Array = (2.0 * scaled_variance(m) - scaled_variance(2.0 * m)) / near[-1]
     return kept
+
+
+def low_passed(tau: ArrayLike, interval: float, share: float, poles: int) -> Array:
+    """Return by what fraction white noise behind a low-pass keeps its Allan variance N²/τ, in closed form.
+
+    Parameters
+    ----------
+    tau : array_like
+        s; need not be a multiple of `interval`.
+    interval : float
+        Time between readings, s.
+    share : float
+        -3 dB frequency over the rate, below 0.5.
+    poles : int
+        As of `low_pass`.
+    """
+    p, c, r0 = _pole_and_residue(share, poles)  # R_k = Re(c p^k) for k > 0
+    m = np.asarray(tau, dtype=float) / interval
+
+    def scaled_variance(count: Array) -> Array:
+        """Return m V(m)."""
+        correlated = c * (p / (1.0 - p) - p * (1.0 - p**count) / (count * (1.0 - p) ** 2))
+        return r0 + 2.0 * np.real(correlated)
+
+    kept: Array = (2.0 * scaled_variance(m) - scaled_variance(2.0 * m)) / (r0 + 2.0 * (c * p / (1.0 - p)).real)
+    return kept
+
+
+@lru_cache(maxsize=1024)
+def _pole_and_residue(share: float, poles: int) -> tuple[complex, complex, float]:
+    response = low_pass(share, 1.0, poles)
+    if poles == 1:
+        return complex(1.0 - response[0]), 1.0 + 0.0j, 1.0
+    s = tan(pi * share) * complex(-sqrt(0.5), sqrt(0.5))
+    p = (1.0 + s) / (1.0 - s)
+    r0, r1, r2 = autocovariance(response)[:3]
+    square = p * p
+    real, imaginary = np.linalg.solve([[p.real, -p.imag], [square.real, -square.imag]], [r1, r2])
+    return p, complex(real, imaginary), float(r0)
+
+
+def gain_low_pass(f: ArrayLike, interval: float, share: float, poles: int) -> Array:
+    """Return |H(f)|² of such a low-pass, up to half the rate."""
+    if poles == 1:
+        return gain_one_pole(f, interval, _pole_and_residue(share, 1)[0].real)
+    passed: Array = 1.0 / (1.0 + (np.tan(pi * interval * np.asarray(f, dtype=float)) / tan(pi * share)) ** 4)
+    return passed
 
 
 def density_white(f: ArrayLike) -> Array:

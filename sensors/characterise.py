@@ -239,6 +239,8 @@ def _characterise(
     channel: str, series: list[Array], rate: float, pyramid: Pyramid, axis: int, drift: Drift
 ) -> Characterisation:
     deviation = _allan(series, rate)
+    histogram = _histogram(series[0], rate, deviation)
+    step = histogram.resolution or 0.0
     return Characterisation(
         channel=channel,
         rate=rate,
@@ -247,8 +249,8 @@ def _characterise(
         mean=float(pyramid.mean[axis]),
         allan=deviation,
         spectrum=_spectrum(series, rate),
-        histogram=_histogram(series[0], rate, deviation),
-        fit=fit_noise(deviation.tau, deviation.deviation, deviation.edf, rate, drift),
+        histogram=histogram,
+        fit=fit_noise(deviation.tau, deviation.deviation, deviation.edf, rate, drift, step),
     )
 
 

@@ -147,7 +147,7 @@ def promised(description: Description, tau: ArrayLike, channel: str | None = Non
 def _accelerometer(d: AccelerometerDescription) -> tuple[Promise, ...]:
     passes = d.noise_bandwidth
     filtered = passes < d.rate / 2.0
-    covariance = allan.autocovariance(low_pass(passes, d.rate, d.poles)) if filtered else None
+    covariance = allan.autocovariance(allan.low_pass(passes, d.rate, d.poles)) if filtered else None
     return tuple(
         _axis(d, channel, white, noise, covariance)
         for channel, white, noise in zip(("fx", "fy", "fz"), d.white_sd, d.noise_sd, strict=True)
@@ -182,7 +182,7 @@ def _axis(d: AccelerometerDescription, channel: str, white: float, noise: float,
 def _pressure(d: PressureDescription) -> Promise:
     a, per_reading, rounding = d.iir_weight, sqrt(1.0 / d.rate), d.resolution / sqrt(12.0)
     before = sqrt(d.white_sd**2 + rounding**2)
-    covariance = None if a == 1.0 else allan.autocovariance(_decay(a))
+    covariance = None if a == 1.0 else allan.autocovariance(allan.decay(a))
     return Promise(
         channel="pressure",
         unit="Pa",
@@ -210,34 +210,3 @@ def _drifts(d: Description) -> tuple[tuple[float, float], ...]:
     times, ratio = correlation_times(d.correlation_time / FLICKER_SPAN, d.correlation_time * FLICKER_SPAN)
     sd = allan.INSTABILITY * d.drift_sd * sqrt(log(ratio) / pi)
     return tuple((sd, float(time)) for time in times)
-
-
-def _decay(a: float) -> Array:
-    """Impulse response of y += a (x - y), down to 1e-12."""
-    response: Array = a * (1.0 - a) ** np.arange(int(28.0 / a) + 1, dtype=float)
-    return response
-
-
-def low_pass(bandwidth: float, rate: float, poles: int) -> Array:
-    """Return the impulse response of the discrete low-pass behind which an accelerometer's noise is.
-
-    Parameters
-    ----------
-    bandwidth : float
-        -3 dB frequency, below half the rate, Hz.
-    rate : float
-        Hz.
-    poles : int
-        1: y += a (x - y); 2: Butterworth by the bilinear transform.
-    """
-    if poles == 1:
-        c = 1.0 - np.cos(2.0 * np.pi * bandwidth / rate)
-        return _decay(float(np.sqrt(c * c + 2.0 * c) - c))  # |H|² = a²/(a² + 2 (1 - a) c) = 1/2
-    from scipy.signal import butter, lfilter  # late: it takes half a second
-
-    b, a = butter(2, bandwidth, fs=rate)
-    slowest = float(np.max(np.abs(np.roots(a))))
-    impulse = np.zeros(int(28.0 / -log(slowest)) + 8)  # down to 1e-12
-    impulse[0] = 1.0
-    response: Array = lfilter(b, a, impulse)
-    return response

@@ -21,7 +21,7 @@ from sensors.catalogue import presets
 from sensors.characterise import Pyramid, _allan, allan_deviation, characterise
 from sensors.noise_fit import fit_noise
 from sensors.pressure_description import PressureDescription, PressureErrors
-from sensors.promise import low_pass, promised, promises
+from sensors.promise import promised, promises
 
 G0 = 9.80665
 NINE = (892, 809, 823, 798, 671, 644, 883, 903, 677)  # NIST SP 1065, table 30
@@ -114,10 +114,16 @@ def test_one_pole_in_closed_form_is_the_sum_over_its_covariance(pole):
 @pytest.mark.parametrize(("poles", "bandwidth"), [(1, 20.0), (2, 20.0), (2, 180.0)])
 def test_low_pass_is_3_db_down_and_passes_what_scipy_says(poles, bandwidth):
     """Rate 500 Hz. The Allan variance behind it against 2^21 filtered draws, within 5 sd of what χ² has."""
-    response = low_pass(bandwidth, 500.0, poles)
+    response = allan.low_pass(bandwidth, 500.0, poles)
     assert response.sum() == pytest.approx(1.0)
     covariance = allan.autocovariance(response)
     assert float(allan.shape(bandwidth, 1 / 500.0, covariance)) == pytest.approx(0.5, abs=1e-9)
+    f, tau = np.array([1.0, 30.0, 210.0]), np.array([1, 2, 7.5, 40, 3000]) / 500.0
+    closed = allan.gain_low_pass(f, 1 / 500.0, bandwidth / 500.0, poles)
+    assert closed == pytest.approx(allan.shape(f, 1 / 500.0, covariance), rel=1e-6, abs=1e-12)
+    whole = tau * 500.0 == np.round(tau * 500.0)
+    closed = allan.low_passed(tau, 1 / 500.0, bandwidth / 500.0, poles)
+    assert closed[whole] == pytest.approx(allan.correlated(tau, 1 / 500.0, covariance)[whole], rel=1e-8)
     white = np.random.default_rng(3).normal(size=2**21)
     behind = lfilter(response, [1.0], white)[len(response) :]
     found = allan_deviation(behind, 500.0, [1, 2, 5, 20, 100])
@@ -248,6 +254,18 @@ def test_too_few_readings_are_refused():
 TAU = np.geomspace(0.01, 2000.0, 54)
 
 
+def flicker_kept(tau, interval, pole):
+    """Return the share of flicker noise's Allan variance that passes a one-pole filter, by Simpson's rule."""
+    x = X[::50]
+    f = x / (pi * tau)
+    inside = f < 0.5 / interval
+    window = (np.sin(x) ** 4 / x**2)[inside]
+    passed, whole = (
+        simpson(window * gain, x=np.log(f[inside])) for gain in (allan.gain_one_pole(f[inside], interval, pole), 1.0)
+    )
+    return passed / whole
+
+
 @pytest.mark.parametrize(
     ("N", "B", "K", "Q", "time", "pole"),
     [
@@ -261,10 +279,12 @@ TAU = np.geomspace(0.01, 2000.0, 54)
 )
 def test_a_fit_finds_what_an_exact_curve_was_made_of(N, B, K, Q, time, pole):
     """No statistics: the points are on the curve. 3 % in each term, 10 % in what shapes it."""
-    drift = allan.flicker(TAU) if time is None else allan.gauss_markov(TAU, time) / allan.INSTABILITY**2
-    discrete = allan.sampled(TAU, 0.01)
-    variance = 3 * Q**2 / TAU**2 + N**2 * allan.one_pole(TAU, 0.01, pole) / TAU
-    variance += (B**2 * drift if time is None else B**2 * drift * discrete) + K**2 * TAU / 3 * discrete
+    if time is not None:
+        drift = allan.drift_behind(TAU, time, 0.01, pole) / allan.INSTABILITY**2
+    else:
+        drift = np.array([allan.FLICKER_FLAT**2 * flicker_kept(tau, 0.01, pole) for tau in TAU])
+    walk = 0.5e9 * allan.drift_behind(TAU, 1e9, 0.01, pole)
+    variance = 3 * Q**2 / TAU**2 + N**2 * allan.one_pole(TAU, 0.01, pole) / TAU + B**2 * drift + K**2 * walk
     edf = np.maximum(1e7 / TAU * 0.01, 1e4)
     fit = fit_noise(TAU, np.sqrt(variance), edf, 100.0)
     assert fit is not None

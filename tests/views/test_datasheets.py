@@ -126,6 +126,10 @@ def test_promised_and_found_stand_side_by_side_in_80_columns(compared: Bench, ca
     out = capsys.readouterr().out
     assert widest(out) <= 80
     assert "adxl345 on the bench: ±16 g, 800 Hz, filter rate/2" in out
+    head = next(line for line in out.splitlines() if "promised" in line)
+    assert head.split() == ["promised", "simulated", "…-is-rather-long.csv"]
+    rest = out.partition(head)[2].partition("Note:")[0]
+    assert "…" not in rest.replace(" … ", "")  # nothing is cut
     found = rows_of(out, "white noise N, mm/s²·√s")
     assert [row[0] for row in found] == ["fx", "fy", "fz"]
     for row, promise, simulated, log in zip(
@@ -178,6 +182,7 @@ def test_a_record_that_does_not_move_has_no_figures(capsys: Capture) -> None:
         (Coefficient(250.0, 220.0, 290.0, resolved=True), 1.0, "250 ± 35"),
         (Coefficient(2.0, 2.0, 2.0, resolved=True), 1.0, "2.000 ± 0.000"),
         (Coefficient(0.4, 0.0, 0.512, resolved=False), 1.0, "below 0.51"),
+        (Coefficient(0.51, 0.4, 1.31, resolved=True), 1.0, "0.4 … 1.3"),
     ],
 )
 def test_an_interval_has_the_digits_that_it_deserves(coefficient: Coefficient, factor: float, text: str) -> None:

@@ -66,6 +66,7 @@ PRESET_UNITS = {
 }
 """Units of a datasheet's values; the others have none."""
 
+SKEWED = 0.3  # by how much of half its interval a value may be off the middle and still be printed with ±
 _SUFFIXES = ("_g", "_ug", "_mg", "_percent", "_pa", "_k", "_ms", "_hz")
 _SCALES = {"m/s²": (1e3, "mm/s²"), "Pa": (1.0, "Pa")}  # how a unit is printed
 
@@ -181,9 +182,14 @@ def _figure(value: float | None) -> str:
 
 
 def _with_interval(c: Coefficient, factor: float) -> str:
-    """Return a value with half its interval, to two digits of that; or the bound below which it is."""
+    """Return a value with half its interval, to two digits of that; or the bound below which it is.
+
+    Where the value is far from the middle of its interval, that stands alone.
+    """
     if not c.resolved:
         return f"below {factor * c.high:.2g}"
+    if abs(2.0 * c.value - c.low - c.high) > SKEWED * (c.high - c.low):
+        return f"{factor * c.low:.2g} … {factor * c.high:.2g}"
     half = float(f"{0.5 * factor * (c.high - c.low):.2g}")
     digits = max(0, 1 - floor(log10(half))) if half > 0.0 else 3
     return f"{factor * c.value:.{digits}f} ± {half:.{digits}f}"
@@ -236,7 +242,7 @@ ROWS: tuple[tuple[str, Callable[[Promise, float], str], Callable[[Characterisati
 
 def _notes(bench: Bench) -> list[str]:
     fits = [c.fit for c in (*bench.simulated, *bench.compared)]
-    said = ["N, B, K are fitted to the Allan deviation (IEEE Std 952); ± is half of a 95 % interval."]
+    said = ["N, B, K are fitted to the Allan deviation (IEEE Std 952); ± is half of a 95 % interval, a … b is one."]
     if any(not getattr(fit, name).resolved for fit in fits if fit is not None for name in ("N", "B", "K")):
         said.append("below …: the record does not show the term; 95 % upper bound.")
     if None in fits:
