@@ -67,7 +67,7 @@ def allan(bench: Bench) -> "Figure":
     low, high = _span([a.deviation for a in shown])
     tau = np.geomspace(min(a.tau[0] for a in shown), max(a.tau[-1] for a in shown), POINTS)
     for axes, promise, measured in zip(columns, bench.promises, _pairs(bench), strict=True):
-        own = tau[tau >= 1.0 / promise.rate]
+        own = np.unique(np.maximum(np.round(tau * promise.rate), 1.0)) / promise.rate  # whole readings
         for name, term in promise.terms(own).items():
             if np.any(term > low):
                 axes.plot(own, term, color=COLOURS[name], linewidth=1.0, linestyle="--", label=f"promised: {name}")
