@@ -36,8 +36,9 @@ What is not a number
     A truth that is NaN gives a reading that is NaN, never an exception; once it is a number again, readings are, too.
 
 Names
-    presets, preset · Streams · Accelerometer, Vibration · PressureSensor, AirDataHead, head_noise · record_at_rest ·
-    the settings and descriptions. The package imports numpy, pandas, scipy and allantools late, nothing of uavsim.
+    presets, preset, promised · Streams · Accelerometer, Vibration · PressureSensor, AirDataHead, head_noise ·
+    record_at_rest, read_bench_log · the settings and descriptions. The package imports numpy, pandas, scipy and
+    allantools late, nothing of uavsim.
 """
 
 from importlib import import_module
@@ -47,10 +48,12 @@ if TYPE_CHECKING:
     from sensors.accelerometer import Accelerometer
     from sensors.accelerometer_description import AccelerometerDescription, AccelerometerErrors
     from sensors.bench import record_at_rest
+    from sensors.bench_log import read_bench_log
     from sensors.catalogue import preset, presets
     from sensors.head import AirDataHead, head_noise
     from sensors.pressure import PressureSensor
     from sensors.pressure_description import PressureDescription, PressureErrors, PressureMode
+    from sensors.promise import promised
     from sensors.settings import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
     from sensors.streams import Streams
     from sensors.vibration import Vibration
@@ -73,6 +76,8 @@ __all__ = [
     "head_noise",
     "preset",
     "presets",
+    "promised",
+    "read_bench_log",
     "record_at_rest",
 ]
 
@@ -94,6 +99,8 @@ _HOME = {
     "head_noise": "head",
     "preset": "catalogue",
     "presets": "catalogue",
+    "promised": "promise",
+    "read_bench_log": "bench_log",
     "record_at_rest": "bench",
 }
 

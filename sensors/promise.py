@@ -116,7 +116,7 @@ def promises(description: Description) -> tuple[Promise, ...]:
     >>> from sensors import preset
     >>> x, y, z = promises(preset("adxl345"))
     >>> round(z.N / x.N, 2)
-    1.41
+    1.47
     """
     if isinstance(description, AccelerometerDescription):
         return _accelerometer(description)

@@ -35,7 +35,7 @@ app = typer.Typer(
 _UsageError: type[Exception] = typer.BadParameter.__mro__[2]
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder to write; made with its parents.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the flight or flights that --out holds.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what --out holds of ours.")]
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw no plots.")]
 
 

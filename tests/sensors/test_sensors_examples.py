@@ -6,7 +6,7 @@ from importlib import import_module
 import pytest
 
 
-@pytest.mark.parametrize("module", ["bench", "catalogue", "streams"])
+@pytest.mark.parametrize("module", ["bench", "catalogue", "probe", "promise", "streams"])
 def test_examples(module):
     result = doctest.testmod(import_module(f"sensors.{module}"))
     assert result.attempted > 0

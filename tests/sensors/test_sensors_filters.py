@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import quad
 from scipy.signal import cont2discrete, lfilter
 
 from sensors.filters import DigitalFilter, History, lag, low_pass, one_pole, settled, two_pole
@@ -117,11 +116,11 @@ def test_history_is_linear_between_steps(age, seed):
 
 @given(st.floats(0.0, 0.02), st.floats(1e-4, 0.03), st.integers(0, 100))
 def test_mean_over_a_window_is_the_integral(age, window, seed):
-    """Authority: scipy.integrate.quad over each straight piece."""
+    """Authority: the trapezium rule, exact on each straight piece."""
     values = np.random.default_rng(seed).normal(size=80)
     times = DT * np.arange(80) - DT * 79
     edges = np.unique([*np.clip(times, -age - window, -age).tolist(), -age - window, -age])
-    expected = sum(quad(lambda t: np.interp(t, times, values), a, b)[0] for a, b in pairwise(edges)) / window
+    expected = np.trapezoid(np.interp(edges, times, values), edges) / window
     assert _history(values).mean(window, age) == pytest.approx((expected, 2 * expected, -expected), abs=1e-9)
 
 
