@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 PAPER_GAIN = 0.8  # of the published method's filter on the total pressure
 LITTLE = 5.0  # %, a reduction of the RMSE that is not worth a filter
+QUIET = 0.5  # share of the lag below which a sensor's noise is too little to be worth it
 MOSTLY = 0.7  # share of the RMSE that makes the bias the story
 
 
@@ -48,6 +49,8 @@ def _no_help(flight: "Flight") -> str:
         return ""
     noise, gain, slope, interval = _total_channel(flight)
     lag = slope * interval * (1.0 - PAPER_GAIN) / PAPER_GAIN
+    if noise > QUIET * lag:
+        return ""  # it is something else: a fault, an offset
     kept = (PAPER_GAIN / (2.0 - PAPER_GAIN)) ** 0.5
     return (
         f"this filter cannot help here: the sensor's noise is {noise:.2f} Pa rms every {1e3 * interval:.1f} ms. A gain "
