@@ -69,7 +69,7 @@ def draw(scenario: Scenario, index: int = 0) -> Draws:
 class WatchedDetector:
     """A launch detector whose state is written down at each step from a given time on."""
 
-    def __init__(self, detector: launch.MultiLevelWindow, record_from: float) -> None:
+    def __init__(self, detector: launch.Detector, record_from: float) -> None:
         self.detector = detector
         self.rows: list[tuple[float, int, int, int, bool, bool]] = []
         self._from = record_from

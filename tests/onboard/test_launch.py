@@ -11,14 +11,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uavsim.onboard import launch
-from uavsim.onboard.launch import DetectorSettings, MultiLevelWindow
+from uavsim.onboard.launch import DetectorSettings, MultiLevelWindow, nested
+from uavsim.onboard.launch import settings as launch_settings
 
 ALL_AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 NAN = math.nan
 
 
 def test_examples():
-    assert doctest.testmod(launch).failed == 0
+    for module in (nested, launch_settings):
+        results = doctest.testmod(module)
+        assert results.attempted > 0 == results.failed
 
 
 def make(**changes):

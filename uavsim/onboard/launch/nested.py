@@ -1,6 +1,6 @@
-"""Launch detectors, which tell from the specific force that the catapult has fired.
+"""Multi-level time window with threshold: the published method.
 
-Multi-level time window with threshold. A sample above G1 (`trigger`) at t₀ opens nested windows, the l-th holding the
+A sample above G1 (`trigger`) at t₀ opens nested windows, the l-th holding the
 first l·n samples from t₀ on, the sample at t₀ included. N counts those above G2 (`threshold`). At the end of each
 window, l = 1 … i (`levels`), the launch is recognised if
 
@@ -14,17 +14,11 @@ white noise to be recognised half of the time. Shocks shorter than k₁·n sampl
 unless others follow; a launch must stay above G2 for longer than that.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite
-from typing import Annotated, Literal, get_args
+from typing import Literal, get_args
 
-from annotated_types import Gt, Interval, MinLen
-
-Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
-
-GAP_PERIODS = 3.0  # sample periods; a longer gap inside a window abandons it
-_ROUNDING = 1.0 + 1e-6  # –; times are k/rate in floating point, so a gap of exactly three periods may read longer
+from uavsim.onboard.launch.detector import ROUNDING, Axis, require
 
 
 class MultiLevelWindow:
@@ -102,19 +96,19 @@ class MultiLevelWindow:
         rearm: bool = True,
         max_gap: float | None = None,
     ) -> None:
-        _require(isfinite(threshold) and isfinite(trigger), "trigger and threshold must be finite")
-        _require(trigger >= threshold, "trigger must not be below threshold")
-        _require(samples == int(samples) and levels == int(levels), "samples and levels must be whole numbers")
-        _require(samples >= 1 and levels >= 1, "samples and levels must be at least 1")
-        _require(0.0 < ratio <= 1.0, "ratio must be above 0 and at most 1")
-        _require(max_gap is None or max_gap > 0.0, "max_gap must be above 0")
+        require(isfinite(threshold) and isfinite(trigger), "trigger and threshold must be finite")
+        require(trigger >= threshold, "trigger must not be below threshold")
+        require(samples == int(samples) and levels == int(levels), "samples and levels must be whole numbers")
+        require(samples >= 1 and levels >= 1, "samples and levels must be at least 1")
+        require(0.0 < ratio <= 1.0, "ratio must be above 0 and at most 1")
+        require(max_gap is None or max_gap > 0.0, "max_gap must be above 0")
         if axes != "any":
             known = get_args(Axis)
-            _require(
+            require(
                 len(axes) == len(set(axes)) > 0 and all(axis in known for axis in axes),
                 f'axes must be "any" or different ones of {", ".join(known)}',
             )
-        self._max_gap = inf if max_gap is None else max_gap * _ROUNDING
+        self._max_gap = inf if max_gap is None else max_gap * ROUNDING
         names: tuple[str, ...] = ("any",) if axes == "any" else axes
         self._counters = tuple(
             _Counter(
@@ -269,93 +263,3 @@ def _largest(force: tuple[float, float, float]) -> float:
     """Largest magnitude; max() passes over a NaN that does not come first."""
     fx, fy, fz = force
     return max(0.0, abs(fx), abs(fy), abs(fz))
-
-
-def _require(condition: bool, message: str) -> None:
-    if not condition:
-        raise ValueError(message)
-
-
-@dataclass(frozen=True, slots=True)
-class DetectorSettings:
-    """Which detector is flown, and its settings in seconds and m/s².
-
-    Attributes
-    ----------
-    kind : str
-        "multi-level-window", the published method.
-    threshold : float
-        G2, m/s². 45.11 is 4.6 g: above a centrifuge run at 4.1 g with its noise, below the weakest launch of 5 g.
-    trigger : float, optional
-        G1, m/s², not below the threshold. None: equal to it.
-    window : float
-        Length of the first window, s; n = round(window·rate), at least 1.
-    levels : int
-        Number of nested windows.
-    ratio : float
-        Share of samples above the threshold that recognises.
-    axes : tuple of str, or "any"
-        Signed body axes, or any of them by magnitude.
-    rearm : bool
-        Whether it triggers again after its last window failed.
-    """
-
-    kind: Literal["multi-level-window"] = "multi-level-window"
-    threshold: Annotated[float, Interval(gt=0.0, le=2000.0)] = 45.11
-    trigger: Annotated[float, Interval(gt=0.0, le=2000.0)] | None = None
-    window: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.018
-    levels: Annotated[int, Interval(ge=1, le=100)] = 4
-    ratio: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.8
-    axes: Annotated[tuple[Axis, ...], MinLen(1)] | Literal["any"] = ("+x",)
-    rearm: bool = True
-
-
-def build(settings: DetectorSettings, rate: Annotated[float, Gt(0.0)]) -> MultiLevelWindow:
-    """Make the detector for an accelerometer of the given rate.
-
-    Parameters
-    ----------
-    settings : DetectorSettings
-        What to build.
-    rate : float
-        Samples a second, Hz.
-
-    Returns
-    -------
-    MultiLevelWindow
-        A detector whose windows are abandoned at gaps above three nominal periods.
-
-    Raises
-    ------
-    ValueError
-        Settings that do not fit together, or a rate that is not above 0.
-    """
-    _require(rate > 0.0, "rate must be above 0 Hz")
-    return MultiLevelWindow(
-        trigger=settings.threshold if settings.trigger is None else settings.trigger,
-        threshold=settings.threshold,
-        samples=max(1, round(settings.window * rate)),
-        levels=settings.levels,
-        ratio=settings.ratio,
-        axes=settings.axes,
-        rearm=settings.rearm,
-        max_gap=GAP_PERIODS / rate,
-    )
-
-
-def default(rate: float = 1000.0) -> MultiLevelWindow:
-    """Make the detector that the packaged scenarios fly, on the body x axis.
-
-    Parameters
-    ----------
-    rate : float
-        Accelerometer samples a second, Hz.
-
-    Examples
-    --------
-    >>> detector = default()
-    >>> steps = [detector.step(0.001 * k, 60.0, 0.0, -9.8) for k in range(20)]
-    >>> steps.index(True)  # the eighteenth sample ends the first window
-    17
-    """
-    return build(DetectorSettings(), rate)
