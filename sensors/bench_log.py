@@ -30,7 +30,7 @@ NUMBER = re.compile(r"(.+?)\*\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)")
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a column comes from: a column of the file times a factor."""
+    """Where a column comes from: a column of the file times a factor; see `resolved` for how it is told apart."""
 
     column: str
     factor: float = 1.0
@@ -135,10 +135,10 @@ def read_bench_log(
         If it cannot be read.
     """
     try:
-        frame = _table(path)
+        frame = read_table(path)
         wanted = _sources(list(map(str, frame.columns)), columns, optional, mapping or {})
         names = tuple(wanted)
-        values = np.column_stack([_numbers(frame, source) for source in wanted.values()])
+        values = np.column_stack([numbers(frame, source) for source in wanted.values()])
         good = np.isfinite(values).all(axis=1)
         dropped, values = int(np.count_nonzero(~good)), values[good]
         return _evenly(path.name, names, values, dropped)
@@ -148,7 +148,8 @@ def read_bench_log(
         raise ValueError(f"{path}: {error}") from error
 
 
-def _table(path: Path) -> "pd.DataFrame":
+def read_table(path: Path) -> "pd.DataFrame":
+    """Read a CSV file as it is; ValueError if it is no table."""
     import pandas as pd  # late: it takes half a second
 
     with path.open(encoding="utf-8-sig", errors="replace") as file:
@@ -169,31 +170,38 @@ def _sources(
     """Return where each column of ours comes from."""
     wanted = {}
     for name in (*columns, *optional):
-        source = _with_factor(mapping.get(name, Source(name)), found)
+        source = resolved(mapping.get(name, Source(name)), found)
         if source.column in found:
             wanted[name] = source
         elif name in mapping or name in columns:
             lacking = [n for n in columns if n not in mapping and n not in found] or [name]
             hint = f"has no column {source.column!r}" if name in mapping else f"lacks {', '.join(lacking)}"
             ours = ",".join(f"{n}=…" for n in lacking)
-            raise ValueError(f"{hint}; it has {_listed(found)}; say which is which with --map {ours}")
+            raise ValueError(f"{hint}; it has {listed(found)}; say which is which with --map {ours}")
     return wanted
 
 
-def _with_factor(source: Source, found: Sequence[str]) -> Source:
-    """Split a factor off a name that is not itself a column."""
-    match = None if source.column in found else NUMBER.fullmatch(source.column)
+def resolved(source: Source, found: Sequence[str]) -> Source:
+    """Split a sign and a factor off a name that is not itself a column: `-Ay`, `ax*9.80665`, `-ax*9.80665`."""
+    name, sign = source.column, 1.0
+    if name not in found and name[:1] in ("-", "+"):
+        name, sign = name[1:].strip(), -1.0 if name[0] == "-" else 1.0
+    if name in found:
+        return Source(name, sign * source.factor)
+    match = NUMBER.fullmatch(name)
     if match is None or match[1].strip() not in found:
         return source
-    return Source(match[1].strip(), float(match[2]))
+    return Source(match[1].strip(), sign * source.factor * float(match[2]))
 
 
-def _listed(names: Sequence[str], most: int = 12) -> str:
+def listed(names: Sequence[str], most: int = 12) -> str:
+    """Name columns, not too many."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return ", ".join(names[:most]) + more if names else "no columns"
 
 
-def _numbers(frame: "pd.DataFrame", source: Source) -> Array:
+def numbers(frame: "pd.DataFrame", source: Source) -> Array:
+    """Return a column in our unit, NaN where it holds something else than a number; ValueError if it holds none."""
     import pandas as pd
 
     column = pd.to_numeric(frame[source.column], errors="coerce").to_numpy(dtype=float)
