@@ -38,6 +38,8 @@ def test_examples() -> None:
 
 # ---- every pattern
 
+SYMBOLS = list(product(range(3), repeat=8))  # below G2, between G2 and G1, above G1
+
 TINY = [  # n, i, k₁, re-arm
     (1, 1, 1.0, True),
     (1, 3, 0.5, True),
@@ -61,7 +63,7 @@ def test_nested_windows_sum_over_all_patterns(samples: int, levels: int, ratio: 
     above = exact.exceedance(curve, sigma, threshold)
     share = np.stack([1.0 - above, above - high, high])
     expected = np.zeros((8, levels))
-    for pattern in product(range(3), repeat=8):
+    for pattern in SYMBOLS:
         passage = first_passage([(0.0, 4.5, 9.0)[symbol] for symbol in pattern], detector)
         if passage is not None:
             expected[passage[0], passage[1] - 1] += share[pattern, range(8)].prod()
@@ -85,6 +87,65 @@ def test_sliding_windows_sum_over_all_patterns(samples: int, ratio: float) -> No
     expected = np.bincount(first, weights=weights, minlength=13)[:12]
     result = exact.sliding_window(curve, sigma, threshold=4.5, samples=samples, ratio=ratio)
     np.testing.assert_allclose(result.mass[:, 0], expected, rtol=0.0, atol=1e-12)
+
+
+def _sequence_by_definition(pattern: tuple[int, ...], samples: int, ratio: float, sequence: int) -> int | None:
+    """Sample that recognises: a row above G1 opens, and ratio·n of the n samples from its first on are above G2."""
+    k = row = 0
+    while k < len(pattern):
+        row = row + 1 if pattern[k] == 2 else 0
+        if row == sequence:
+            window = pattern[k + 1 - sequence : k + 1 - sequence + samples]
+            k += samples - sequence
+            row = 0
+            if k < len(pattern) and sum(symbol > 0 for symbol in window) >= ratio * samples - 1e-9:
+                return k
+        k += 1
+    return None
+
+
+def _hold_by_definition(pattern: tuple[int, ...], samples: int) -> int | None:
+    """Sample that ends the first stretch of n of which the first is above G1 and all are above G2."""
+    for k in range(samples - 1, len(pattern)):
+        stretch = pattern[k - samples + 1 : k + 1]
+        if stretch[0] == 2 and min(stretch) > 0:
+            return k
+    return None
+
+
+@pytest.mark.parametrize(
+    ("samples", "ratio", "sequence"),
+    [
+        (1, 1.0, 1),
+        (3, 0.6, 1),
+        (3, 0.6, 2),
+        (4, 0.75, 2),
+        (5, 0.6, 3),
+        (4, 1.0, 4),
+        (None, 1, 1),
+        (None, 3, 1),
+        (None, 5, 1),
+    ],
+)
+def test_rows_and_holds_sum_over_all_patterns(samples: int | None, ratio: float, sequence: int) -> None:
+    """3⁸ sequences by the definitions, sequence windows and double thresholds (no window: held for `ratio`); 1e-12."""
+    curve, sigma, levels = np.random.default_rng(4).uniform(3.0, 7.0, 8), 1.3, {"trigger": 5.0, "threshold": 4.0}
+    above, high = exact.exceedance(curve, sigma, 4.0), exact.exceedance(curve, sigma, 5.0)
+    share = np.stack([1.0 - above, above - high, high])
+    expected = np.zeros(8)
+    for pattern in SYMBOLS:
+        if samples is None:
+            k = _hold_by_definition(pattern, int(ratio))
+        else:
+            k = _sequence_by_definition(pattern, samples, ratio, sequence)
+        if k is not None:
+            expected[k] += share[pattern, range(8)].prod()
+    if samples is None:
+        result = exact.hold(curve, sigma, samples=int(ratio), **levels)
+    else:
+        result = exact.sequence_window(curve, sigma, samples=samples, ratio=ratio, sequence=sequence, **levels)
+    np.testing.assert_allclose(result.mass[:, 0], expected, rtol=0.0, atol=1e-12)
+    assert result.probability > 0.05  # there is something to compare
 
 
 @pytest.mark.parametrize("counts", [(2,), (2, 3), (1, 3), (2, 3, 4), (1, 1, 3), (0, 1), (2, 5)])
@@ -342,6 +403,12 @@ def test_windows_too_wide_to_be_exact_are_refused_with_the_numbers() -> None:
     with pytest.raises(ValueError, match="63 samples"):
         exact.sliding_window([1.0], 1.0, threshold=1.0, samples=64, ratio=1.0)
     assert exact.hold(np.ones(100), 0.0, threshold=0.0, samples=64).probability == 1.0
+
+
+@pytest.mark.parametrize("sequence", [0, 4, 1.5])
+def test_a_sequence_out_of_its_window_is_refused(sequence: int) -> None:
+    with pytest.raises(ValueError, match="at most samples"):
+        exact.sequence_window([1.0], 1.0, threshold=1.0, samples=3, ratio=0.8, sequence=sequence)
 
 
 def test_no_count_is_no_sequence() -> None:

@@ -7,10 +7,12 @@ Sample k reads x_k = s_k + v_k, m/s², v_k independent Gaussian of deviation σ_
 independently of all others. What a window detector remembers of the past is one of finitely many states, and the
 probabilities of these states advance sample by sample as a Markov chain whose recognised states absorb:
 
-- nested windows: idle, or (samples since the trigger, how many of them were above), at most (i·n)²/2 of them;
+- nested windows: idle, or (samples since the trigger, how many of them were above), at most (i·n)²/2 of them; where a
+  window is opened by some samples in a row, how long the row is;
 - sliding window of n samples that asks for m above: not yet recognised means that the (n - m + 1)-th last sample not
   above is still in the window, so that the places of these last n - m + 1 are all there is to remember: C(n, m - 1)
   states instead of 2ⁿ. With m = n the one place is the length of the run above: a threshold with a hold.
+  A hold that a higher level begins has the same states.
 
 The chain counts samples, as the onboard detectors do at a steady rate without gaps; one signed axis.
 Source of the method: Fu & Lou, Distribution Theory of Runs and Patterns and Its Applications, 2003, chapter 2 (finite
@@ -231,6 +233,38 @@ def threshold_window(
     )
 
 
+def sequence_window(
+    curve: ArrayLike,
+    sigma: ArrayLike,
+    *,
+    threshold: float,
+    samples: int,
+    ratio: float,
+    sequence: int,
+    trigger: float | None = None,
+    period: float = 1e-3,
+) -> Recognition:
+    """Exact recognition by one window that some samples in a row open, those the first in it; it re-arms.
+
+    Parameters
+    ----------
+    curve, sigma, threshold, samples, ratio, trigger, period
+        As for `multi_level_window`.
+    sequence
+        How many in a row must be above the trigger, at most `samples`.
+
+    Raises
+    ------
+    ValueError
+        As `multi_level_window`, or if the sequence is out of bounds.
+    """
+    _check(samples, 1, ratio)
+    if sequence != int(sequence) or not 1 <= sequence <= samples:
+        raise ValueError("sequence must be a whole number, at least 1 and at most samples")
+    chain = _Nested(curve, sigma, threshold, samples, 1, ratio, trigger, sequence)
+    return Recognition(chain.run(rearm=True), _positive(period))
+
+
 def count_sequence(
     curve: ArrayLike,
     sigma: ArrayLike,
@@ -301,14 +335,28 @@ def hold(
     *,
     threshold: float,
     samples: int,
+    trigger: float | None = None,
     period: float = 1e-3,
 ) -> Recognition:
-    """Exact recognition by a single threshold exceeded by this many samples in a row.
+    """Exact recognition by a threshold exceeded by so many samples in a row, of any number.
 
-    Parameters and errors are those of `sliding_window`, but the run may be of any length.
+    Parameters
+    ----------
+    curve, sigma, period
+        As for `multi_level_window`.
+    threshold, samples
+        G, m/s², and how many in a row; the hold at a steady rate is `samples` periods.
+    trigger
+        Level that the first of them must exceed, m/s², not below the threshold (double threshold); None: the same.
+
+    Raises
+    ------
+    ValueError
+        What `exceedance` raises; settings out of bounds.
     """
     _check(samples, 1, 1.0)
-    return Recognition(_run(exceedance(curve, sigma, threshold), samples)[:, np.newaxis], _positive(period))
+    starts, above = _levels(curve, sigma, threshold, trigger)
+    return Recognition(_run(starts, above, samples)[:, np.newaxis], _positive(period))
 
 
 class _Nested:
@@ -323,13 +371,11 @@ class _Nested:
         levels: int,
         ratio: float,
         trigger: float | None,
+        sequence: int = 1,
     ) -> None:
         _check(samples, levels, ratio)
-        first = threshold if trigger is None else trigger
-        if not first >= threshold:
-            raise ValueError("trigger must not be below threshold")
-        self._triggers = exceedance(curve, sigma, first)
-        self._above = exceedance(curve, sigma, threshold)
+        self._triggers, self._above = _levels(curve, sigma, threshold, trigger)
+        self._sequence = sequence
         self._ends = samples * np.arange(1, levels + 1)
         self._needed = [_needed(ratio, int(end)) for end in self._ends]
         self._last = samples * levels
@@ -337,21 +383,21 @@ class _Nested:
     def run(self, rearm: bool) -> Floats:
         """First-passage probabilities, shape (samples, levels)."""
         mass = np.zeros((self._above.size, self._ends.size))
-        at, idle = self._empty(), 1.0
+        at, row = self._start()
         for k, (start, above) in enumerate(zip(self._triggers, self._above, strict=True)):
-            at, idle = self._step(at, idle, start, above)
+            at, row = self._step(at, row, start, above)
             for level, (end, needed) in enumerate(zip(self._ends, self._needed, strict=True)):
                 mass[k, level] = at[end, needed:].sum()
                 at[end, needed:] = 0.0
             if rearm:
-                idle += at[-1].sum()  # it may trigger again at the next sample
+                row[0] += at[-1].sum()  # it may trigger again at the next sample
         return mass
 
     def follow(self, counts: tuple[int, ...]) -> float:
         """Probability of these counts at the ends of the first trigger's windows."""
-        total, at, idle = 0.0, self._empty(), 1.0
+        total, (at, row) = 0.0, self._start()
         for start, above in zip(self._triggers, self._above, strict=True):
-            at, idle = self._step(at, idle, start, above)
+            at, row = self._step(at, row, start, above)
             for end, count in zip(self._ends, counts, strict=True):
                 right = at[end, count] if 0 <= count <= end else 0.0
                 at[end] = 0.0
@@ -360,28 +406,33 @@ class _Nested:
             total += at[-1].sum()
         return float(total)
 
-    def _empty(self) -> Floats:
-        return np.zeros((self._last + 1, self._last + 1))
+    def _start(self) -> tuple[Floats, Floats]:
+        row = np.zeros(self._sequence)  # row[r]: no window is open, and the last r samples were above the trigger
+        row[0] = 1.0
+        return np.zeros((self._last + 1, self._last + 1)), row
 
-    @staticmethod
-    def _step(at: Floats, idle: float, start: float, above: float) -> tuple[Floats, float]:
-        """One sample: every open window grows by it (the full ones are done with), and an idle counter may trigger."""
-        new = np.zeros_like(at)
+    def _step(self, at: Floats, row: Floats, start: float, above: float) -> tuple[Floats, Floats]:
+        """One sample: every open window grows by it (the full ones are done with), and another may open."""
+        new, longer = np.zeros_like(at), np.zeros_like(row)
         new[1:] = (1.0 - above) * at[:-1]
         new[1:, 1:] += above * at[:-1, :-1]
-        new[1, 1] = idle * start
-        return new, idle * (1.0 - start)
+        new[self._sequence, self._sequence] += start * row[-1]
+        longer[1:] = start * row[:-1]
+        longer[0] = (1.0 - start) * row.sum()
+        return new, longer
 
 
-def _run(above: Floats, samples: int) -> Floats:
+def _run(starts: Floats, above: Floats, samples: int) -> Floats:
     """First passage of a run of this length: `length[r]` is the probability of a run of r up to now."""
-    mass, length = np.zeros(above.size), np.zeros(samples)
+    mass, length = np.zeros(above.size), np.zeros(samples + 1)
     length[0] = 1.0
-    for k, p in enumerate(above):
-        mass[k] = p * length[-1]
-        broken = (1.0 - p) * length.sum()
-        length[1:] = p * length[:-1]
-        length[0] = broken
+    for k, (start, p) in enumerate(zip(starts, above, strict=True)):
+        longer = np.empty_like(length)
+        longer[0] = (1.0 - start) * length[0] + (1.0 - p) * length[1:].sum()
+        longer[1] = start * length[0]
+        longer[2:] = p * length[1:-1]
+        mass[k], longer[-1] = longer[-1], 0.0
+        length = longer
     return mass
 
 
@@ -429,6 +480,16 @@ def _words(bits: int, ones: int) -> NDArray[np.uint64]:
         for k in range(ones, 0, -1):
             having[k] = np.concatenate([having[k], having[k - 1] | (np.uint64(1) << np.uint64(bit))])
     return having[ones]
+
+
+def _levels(curve: ArrayLike, sigma: ArrayLike, threshold: float, trigger: float | None) -> tuple[Floats, Floats]:
+    """Probability that each sample is above the trigger, and above the threshold."""
+    above = exceedance(curve, sigma, threshold)
+    if trigger is None:
+        return above, above
+    if not trigger >= threshold:
+        raise ValueError("trigger must not be below threshold")
+    return exceedance(curve, sigma, trigger), above
 
 
 def _needed(ratio: float, total: int) -> int:
