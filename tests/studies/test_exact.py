@@ -357,7 +357,7 @@ def test_ratio_is_decided_in_whole_numbers() -> None:
 
 
 def test_latency_counts_from_the_onset() -> None:
-    """Masses 0.1, 0.2, 0.3, 0.2 at samples 1, 3, 4, 6; onset 2: by hand."""
+    """Masses 0.1, 0.2, 0.3, 0.2 at samples 1, 3, 4, 6; onsets 2 and 3: by hand."""
     mass = np.zeros((8, 1))
     mass[[1, 3, 4, 6], 0] = (0.1, 0.2, 0.3, 0.2)
     result = exact.Recognition(mass, 0.5)
@@ -367,6 +367,22 @@ def test_latency_counts_from_the_onset() -> None:
     assert delay.mean == pytest.approx((1 * 0.2 + 2 * 0.3 + 4 * 0.2) / 0.7 * 0.5)
     assert [delay.quantile(share) for share in (0.01, 0.28, 0.5, 0.9, 1.0)] == [0.5, 0.5, 1.0, 2.0, 2.0]
     assert delay.median == 1.0
+    assert result.latency(3).false_alarm == pytest.approx(0.1)
+    assert (result.latency(3).quantile(0.28), result.latency(4).false_alarm) == pytest.approx((0.0, 0.3))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_quantiles_stand_rounding(seed: int) -> None:
+    """Sums of 2000 and of seven equal masses: all are reached at the last, and k of seven at the k-th."""
+    mass = np.random.default_rng(seed).uniform(size=(2000, 1)) / 2000.0
+    assert exact.Recognition(mass, 1.0).latency().quantile(1.0) == 1999.0
+    equal = exact.Recognition(np.full((7, 1), (seed + 1) / 37.0), 1.0).latency()
+    assert [equal.quantile(k / 7) for k in range(1, 8)] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+
+
+def test_a_sample_at_the_threshold_is_not_above() -> None:
+    assert exact.exceedance([0.9, 1.0, 1.1], 0.0, 1.0).tolist() == [0.0, 0.0, 1.0]
+    assert exact.exceedance([1.0, 1.0], [0.0, 0.3], 1.0).tolist() == [0.0, 0.5]
 
 
 def test_there_is_no_latency_without_recognition() -> None:

@@ -131,7 +131,8 @@ class Latency:
             raise ValueError("the share must be above 0 and at most 1")
         if self.probability <= 0.0:
             return float("nan")
-        reached = np.cumsum(self.passage) >= share * self.probability * (1.0 - 1e-12)  # less by rounding is reached
+        by = np.cumsum(self.passage)
+        reached = by >= share * by[-1] * (1.0 - 1e-12)  # what is short by rounding is reached
         return float(np.argmax(reached)) * self.period
 
 
