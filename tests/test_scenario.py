@@ -419,7 +419,8 @@ def is_simple(hint: Any) -> bool:
 
 PARTLY = {"air_data.total.iir", "air_data.static.iir"}  # what a part has is less than what its key allows
 SIMPLE = sorted({key for key in KEYS if is_simple(hint_of(Scenario, key))} - PARTLY)
-SHARED = r"wait_max|longest wait|shortest wait|never be sure"  # the bounds that several keys share
+# The bounds that several keys share.
+SHARED = r"wait_max|longest wait|shortest wait|never be sure|is not read by|lasts no more than"
 PROPERTIES = st.dictionaries(
     st.from_regex(r"[a-z][a-z/.\[\]0-9-]{0,20}", fullmatch=True), st.floats(-1e9, 1e9), max_size=3
 )

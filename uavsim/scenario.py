@@ -5,6 +5,7 @@ key is an error that names the nearest known one; bounds stand with each setting
 cannot tell one by one is checked here.
 """
 
+import math
 import os
 import re
 import tomllib
@@ -26,6 +27,7 @@ from uavsim.flight import UNITS, without_none
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings
+from uavsim.onboard.launch.settings import USES, need, unread
 from uavsim.plants.hangar import find_aircraft, hangar
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.score import Judged, score
@@ -399,12 +401,20 @@ def _parts(s: Scenario) -> tuple[tuple[str, AccelerometerSettings | PressureSett
 
 
 def _check_detector(s: Scenario) -> None:
-    """Refuse a threshold that the accelerometer can never be sure to show."""
-    threshold, trigger = s.detector.threshold, s.detector.trigger
-    key, level = ("threshold", threshold) if trigger is None else ("trigger", trigger)
-    if level < threshold:
+    """Refuse what the detector that was chosen does not read, can never see, or sees only after the stroke."""
+    kind = s.detector.kind
+    for key in unread(s.detector):
         raise SettingError(
-            f"detector.trigger = {level:g}: must be at least the threshold, {threshold:g} m/s²",
+            f"detector.{key}: is not read by kind = '{kind}', which reads {', '.join(USES[kind])} and axes",
+            f"detector.{key}",
+            "detector.kind",
+        )
+    if kind != "multi-level-window" and (s.detector.axes == "any" or len(s.detector.axes) != 1):
+        raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind}'", "detector.axes")
+    key, level, long, time = need(s.detector)
+    if key == "trigger" and level < s.detector.threshold:
+        raise SettingError(
+            f"detector.trigger = {level:g}: must be at least the threshold, {s.detector.threshold:g} m/s²",
             "detector.trigger",
             "detector.threshold",
         )
@@ -421,6 +431,16 @@ def _check_detector(s: Scenario) -> None:
             f"{reach:.1f} m/s²",
             f"detector.{key}",
             "accelerometer",
+        )
+    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
+    shortest = math.sqrt(2.0 * s.launcher.stroke / push)  # all of the push from the start, nothing against it
+    if time >= shortest:
+        raise SettingError(
+            f"detector.{long}: takes {1e3 * time:.0f} ms, and a stroke of {s.launcher.stroke:g} m at {push:.1f} m/s² "
+            f"lasts no more than {1e3 * shortest:.0f} ms",
+            f"detector.{long}",
+            "launcher.stroke",
+            "launcher.peak_specific_force_g",
         )
 
 

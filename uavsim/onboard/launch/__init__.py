@@ -1,11 +1,34 @@
 """Launch detectors, which tell from the specific force that the catapult has fired.
 
-`nested` is the published method. All take samples one by one in constant memory and in a time that does not grow with
-their windows; what they have in common is in `detector`, what a scenario can choose in `settings`.
+`nested` is the published method, `window` and `hold` are those it compares itself with, `cusum` and `glr` statistical
+ones. All take samples one by one in constant memory and in a time that does not grow with their windows; what they
+have in common is in `detector` and `axis`, what a scenario can choose in `settings`.
 """
 
+from uavsim.onboard.launch.cusum import Cusum
 from uavsim.onboard.launch.detector import GAP_PERIODS, Axis, Detector
+from uavsim.onboard.launch.glr import GlrBank
+from uavsim.onboard.launch.hold import DoubleThreshold, SingleThreshold
 from uavsim.onboard.launch.nested import MultiLevelWindow
-from uavsim.onboard.launch.settings import DetectorSettings, build, default
+from uavsim.onboard.launch.settings import CusumSettings, DetectorSettings, GlrSettings, Kind, build, default
+from uavsim.onboard.launch.window import SequenceWindow, SlidingWindow, ThresholdWindow
 
-__all__ = ["GAP_PERIODS", "Axis", "Detector", "DetectorSettings", "MultiLevelWindow", "build", "default"]
+__all__ = [
+    "GAP_PERIODS",
+    "Axis",
+    "Cusum",
+    "CusumSettings",
+    "Detector",
+    "DetectorSettings",
+    "DoubleThreshold",
+    "GlrBank",
+    "GlrSettings",
+    "Kind",
+    "MultiLevelWindow",
+    "SequenceWindow",
+    "SingleThreshold",
+    "SlidingWindow",
+    "ThresholdWindow",
+    "build",
+    "default",
+]

@@ -58,8 +58,8 @@ class MultiLevelWindow:
 
     Notes
     -----
-    A sample that is NaN along an axis is one that does not exceed there. One whose time is NaN or not later than the
-    last is ignored.
+    A sample that is NaN along an axis is one that does not exceed there. One whose time is NaN, infinite or not later
+    than the last is ignored.
 
     Examples
     --------
@@ -149,7 +149,7 @@ class MultiLevelWindow:
         fx, fy, fz : float
             Specific force in body axes, m/s².
         """
-        if not t > self._t:
+        if not self._t < t < inf:
             return False
         if self._idle and fx <= self._upper_x and (self._only_x or self._inside(fx, fy, fz)):
             self._t = t

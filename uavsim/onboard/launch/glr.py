@@ -1,0 +1,116 @@
+"""Bank of clipped likelihood ratios: windows of several lengths, each against the noise of its own mean.
+
+For white noise and a rise of the mean from c by an unknown amount at an unknown time, the generalised likelihood ratio
+is the largest of the window sums over the root of their length:
+
+    max over L of  Σ_L clip(f - c, -fall, +rise)·dt / √L  >  h
+
+f is the force along the launch axis and c the `reference`, m/s²; L a window's length, s; h the `limit`, m/s² √s. A
+short window sees a strong launch soon, a long one a weak launch at all; the clip bounds a shock's say. Source: Lorden,
+Ann. Math. Statist. 42 (1971) 1897; the clip is Huber's.
+
+Sums are kept in whole steps of 2⁻²⁰ m/s², so that adding and taking off leaves no rounding behind however long it runs.
+"""
+
+from math import isfinite, sqrt
+
+from uavsim.onboard.launch.axis import GRAVITY, OneAxis, whole
+from uavsim.onboard.launch.detector import Axis, require
+
+SCALE = 2.0**20  # steps in 1 m/s²
+
+
+class GlrBank(OneAxis):
+    """Recognise a launch by the likelihood ratio of the best of some windows.
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    reference : float
+        c, m/s²; 4.5 g.
+    limit : float
+        h, m/s² √s; 3.5 g √ms.
+    rise, fall : float
+        Bounds of what a sample adds and takes off, m/s²; 1 g each.
+    windows : tuple of float
+        Lengths, s; each is taken as round(L·rate) samples, at least 1.
+    axis : str
+        Signed body axis that points along the launch.
+
+    Attributes
+    ----------
+    level, count, total : int
+        0: the windows do not count.
+    triggered : bool
+        Whether a sample of the longest window has taken off less than `fall`.
+
+    Raises
+    ------
+    ValueError
+        Settings outside their bounds.
+
+    Notes
+    -----
+    Before the first sample, after a gap and where the force is NaN, samples count as ones that take off `fall`.
+
+    Examples
+    --------
+    >>> detector = GlrBank(1000.0)
+    >>> [detector.step(0.001 * k, 60.0, 0.0, -9.8) for k in range(40)].index(True)  # 21 - 3 > 3.5 √24 in 24 ms
+    20
+    """
+
+    __slots__ = ("_fall", "_k", "_longest_window", "_quiet", "_reference", "_ring", "_span", "_sums", "_windows")
+
+    def __init__(
+        self,
+        rate: float,
+        *,
+        reference: float = 4.5 * GRAVITY,
+        limit: float = 3.5 * GRAVITY * sqrt(0.001),
+        rise: float = 1.0 * GRAVITY,
+        fall: float = 1.0 * GRAVITY,
+        windows: tuple[float, ...] = (0.006, 0.012, 0.024, 0.048, 0.096),
+        axis: Axis = "+x",
+    ) -> None:
+        require(isfinite(reference), "reference must be finite")
+        require(all(isfinite(x) and x > 0.0 for x in (limit, rise, fall)), "limit, rise and fall must be above 0")
+        require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
+        require(len(windows) > 0, "windows must not be empty")
+        self._reference, self._fall, self._span = reference, fall, rise + fall
+        lengths = sorted({whole(window, rate, "windows") for window in windows})
+        self._longest_window = lengths[-1]
+        self._windows = tuple((i, n, int(SCALE * (limit * sqrt(n * rate) + n * fall))) for i, n in enumerate(lengths))
+        super().__init__(rate, axis)
+
+    def _clear(self) -> None:
+        self._ring = [0] * self._longest_window
+        self._sums = [0] * len(self._windows)
+        self._k = 0
+        self._quiet = self._longest_window  # samples since the last that took off less than `fall`
+        self.triggered = False
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        if late and self.triggered:
+            self._clear()
+        above = f - self._reference + self._fall
+        if not above > 0.0:  # NaN too
+            if not self.triggered:
+                return False  # a ring of zeros need not turn
+            added = 0
+            self._quiet += 1
+        else:
+            added = int(SCALE * (above if above < self._span else self._span))
+            self._quiet = 0
+        ring, sums, k, reached = self._ring, self._sums, self._k, False
+        for i, n, limit in self._windows:
+            total = sums[i] + added - ring[k - n]
+            sums[i] = total
+            if total > limit:
+                reached = True
+        ring[k] = added
+        k += 1
+        self._k = 0 if k == self._longest_window else k
+        self.triggered = self._quiet < self._longest_window
+        return reached

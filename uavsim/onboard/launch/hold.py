@@ -1,0 +1,99 @@
+"""Levels to be held: the launch is recognised when the force has stayed above a level for a time.
+
+    single threshold:  f > G for t_h
+    double threshold:  begun by f > G1, held as long as f > G2, for t_h;    G1 ≥ G2
+
+A sample that is not above ends the hold at once. Sources: "single threshold + time window" and "double threshold + time
+window", which the published method names.
+"""
+
+from math import inf, isfinite
+
+from uavsim.onboard.launch.axis import OneAxis
+from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+
+
+class DoubleThreshold(OneAxis):
+    """Recognise a launch by a force that exceeds one level and then stays above a lower one.
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    threshold : float
+        G2, m/s². Strictly above counts.
+    window : float
+        t_h, s.
+    trigger : float, optional
+        G1 ≥ G2, m/s². None: equal to it, which is a single threshold.
+    axis : str
+        Signed body axis that points along the launch.
+
+    Attributes
+    ----------
+    held : float
+        Time above so far, s.
+    level, count, total : int
+        0: there are no windows.
+    triggered : bool
+        Whether the level is being held.
+
+    Raises
+    ------
+    ValueError
+        Settings outside their bounds.
+
+    Notes
+    -----
+    The first sample of a hold counts one nominal period, each other one the time since its predecessor. A NaN force
+    and a gap end the hold; the sample after a gap may begin one.
+
+    Examples
+    --------
+    >>> detector = DoubleThreshold(1000.0, trigger=50.0, threshold=40.0, window=0.003)
+    >>> [detector.step(0.001 * k, f, 0.0, -9.8) for k, f in enumerate((45.0, 51.0, 45.0, 41.0))]
+    [False, False, False, True]
+    """
+
+    __slots__ = ("_threshold", "_trigger", "_window", "held")
+
+    def __init__(
+        self, rate: float, *, threshold: float, window: float, trigger: float | None = None, axis: Axis = "+x"
+    ) -> None:
+        self._trigger, self._threshold = threshold if trigger is None else trigger, threshold
+        require(isfinite(self._trigger) and isfinite(threshold), "trigger and threshold must be finite")
+        require(self._trigger >= threshold, "trigger must not be below threshold")
+        require(0.0 < window < inf, "window must be above 0 s")
+        self._window = window / ROUNDING
+        super().__init__(rate, axis)
+
+    def _clear(self) -> None:
+        self.held = 0.0
+        self.triggered = False
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        if self.triggered and not late and f > self._threshold:
+            self.held += dt
+        elif f > self._trigger:
+            self.held = self._period
+            self.triggered = True
+        else:
+            self.held = 0.0
+            self.triggered = False
+            return False
+        return self.held >= self._window
+
+
+class SingleThreshold(DoubleThreshold):
+    """Recognise a launch by a force that stays above one level.
+
+    Parameters
+    ----------
+    rate, threshold, window, axis
+        As of `DoubleThreshold`, whose levels are equal here.
+    """
+
+    __slots__ = ()
+
+    def __init__(self, rate: float, *, threshold: float, window: float, axis: Axis = "+x") -> None:
+        super().__init__(rate, threshold=threshold, window=window, axis=axis)
