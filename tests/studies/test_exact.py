@@ -436,11 +436,12 @@ def test_latency_counts_from_the_onset() -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_quantiles_stand_rounding(seed: int) -> None:
-    """Sums of 2000 and of seven equal masses: all are reached at the last, and k of seven at the k-th."""
+    """Sums of 2000 masses and of n equal ones: all are reached at the last, and k of n at the k-th."""
     mass = np.random.default_rng(seed).uniform(size=(2000, 1)) / 2000.0
     assert exact.Recognition(mass, 1.0).latency().quantile(1.0) == 1999.0
-    equal = exact.Recognition(np.full((7, 1), (seed + 1) / 37.0), 1.0).latency()
-    assert [equal.quantile(k / 7) for k in range(1, 8)] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+    n = 49 + seed
+    equal = exact.Recognition(np.full((n, 1), 0.9 / n), 1.0).latency()
+    assert [equal.quantile(k / n) for k in range(1, n + 1)] == list(range(n))
 
 
 def test_a_sample_at_the_threshold_is_not_above() -> None:
