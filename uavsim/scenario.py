@@ -405,7 +405,7 @@ def _check_detector(s: Scenario) -> None:
     kind = s.detector.kind
     for key in unread(s.detector):
         raise SettingError(
-            f"detector.{key}: is not read by kind = '{kind}', which reads {', '.join(USES[kind])} and axes",
+            f"detector.{key}: is not read by kind = '{kind}', which reads {', '.join((*USES[kind], 'axes'))}",
             f"detector.{key}",
             "detector.kind",
         )
@@ -425,9 +425,10 @@ def _check_detector(s: Scenario) -> None:
     scale = min(3.0 * part.scale_sd, part.scale_limit)
     reach = part.range * (1.0 - scale) - bias - STANDARD_GRAVITY
     if level >= reach:
+        shown = f"{kind}, " if key == "kind" else ""
         raise SettingError(
-            f"detector.{key} = {level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; less "
-            f"1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
+            f"detector.{key} = {shown}{level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; "
+            f"less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
             f"{reach:.1f} m/s²",
             f"detector.{key}",
             "accelerometer",

@@ -18,12 +18,12 @@ from uavsim.onboard.launch import (
     ThresholdWindow,
     build,
 )
-from uavsim.onboard.launch.settings import ONE_AXIS
+from uavsim.onboard.launch.settings import FIELD, ONE_AXIS
 from uavsim.scenario import load_scenario
 
 NAN = math.nan
 G = 9.80665  # m/s², ISO 80000-3
-KINDS = tuple(ONE_AXIS)
+KINDS = tuple(kind for kind in ONE_AXIS if kind not in FIELD)
 
 
 def recognised(detector, force, period=0.001):
@@ -388,15 +388,17 @@ def test_a_flight_ends_in_cruise(kind):
 @pytest.mark.parametrize(
     ("sets", "says"),
     [
-        (["kind=cusum", "threshold=40"], "is not read by kind = 'cusum', which reads cusum and axes"),
+        (["kind=cusum", "threshold=40"], "is not read by kind = 'cusum', which reads cusum, axes"),
         (["sequence=0.01"], "detector.sequence: is not read by kind = 'multi-level-window'"),
         (["kind=sliding-window", "trigger=50"], "is not read by kind = 'sliding-window'"),
         (["kind=cusum", "axes=any"], "must be one signed axis for kind = 'cusum'"),
         (["kind=cusum", "cusum.reference=400"], "detector.cusum.reference = 400 m/s²: lsm6dso32 at ±32 g can never"),
         (["kind=glr-bank", "glr.reference=400"], "detector.glr.reference = 400 m/s²"),
+        (["kind=px4", "threshold=40"], "is not read by kind = 'px4', which reads axes"),
         (["kind=double-threshold", "trigger=20"], "must be at least the threshold"),
         (["window=0.5"], "detector.window: takes 500 ms, and a stroke of 5.2 m at 80.0 m/s² lasts no more than 361 ms"),
         (["kind=cusum", "cusum.limit=4"], "detector.cusum.limit: takes 408 ms"),
+        (["kind=px4", "kind=inav", "axes=any"], "must be one signed axis for kind = 'inav'"),
         (["kind=glr-bank", "glr.windows=[0.7, 0.6]"], "detector.glr.windows: takes 600 ms"),
     ],
 )

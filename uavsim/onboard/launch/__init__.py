@@ -1,12 +1,13 @@
 """Launch detectors, which tell from the specific force that the catapult has fired.
 
 `nested` is the published method, `window` and `hold` are those it compares itself with, `cusum` and `glr` statistical
-ones. All take samples one by one in constant memory and in a time that does not grow with their windows; what they
-have in common is in `detector` and `axis`, what a scenario can choose in `settings`.
+ones, and `field` holds what autopilots fly. All take samples one by one in constant memory and in a time that does not
+grow with their windows; what they have in common is in `detector` and `axis`, what a scenario can choose in `settings`.
 """
 
 from uavsim.onboard.launch.cusum import Cusum
 from uavsim.onboard.launch.detector import GAP_PERIODS, Axis, Detector
+from uavsim.onboard.launch.field import AltOs, ArduPilot, Inav, Paparazzi, Px4, Px4Norm
 from uavsim.onboard.launch.glr import GlrBank
 from uavsim.onboard.launch.hold import DoubleThreshold, SingleThreshold
 from uavsim.onboard.launch.nested import MultiLevelWindow
@@ -15,6 +16,8 @@ from uavsim.onboard.launch.window import SequenceWindow, SlidingWindow, Threshol
 
 __all__ = [
     "GAP_PERIODS",
+    "AltOs",
+    "ArduPilot",
     "Axis",
     "Cusum",
     "CusumSettings",
@@ -23,8 +26,12 @@ __all__ = [
     "DoubleThreshold",
     "GlrBank",
     "GlrSettings",
+    "Inav",
     "Kind",
     "MultiLevelWindow",
+    "Paparazzi",
+    "Px4",
+    "Px4Norm",
     "SequenceWindow",
     "SingleThreshold",
     "SlidingWindow",

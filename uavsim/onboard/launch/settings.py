@@ -8,6 +8,7 @@ from annotated_types import Gt, Interval, MinLen
 
 from uavsim.onboard.launch.cusum import Cusum
 from uavsim.onboard.launch.detector import GAP_PERIODS, Axis, Detector, require
+from uavsim.onboard.launch.field import AltOs, ArduPilot, Inav, Paparazzi, Px4, Px4Norm
 from uavsim.onboard.launch.glr import GlrBank
 from uavsim.onboard.launch.hold import DoubleThreshold, SingleThreshold
 from uavsim.onboard.launch.nested import MultiLevelWindow
@@ -73,6 +74,12 @@ Kind = Literal[
     "double-threshold",
     "cusum",
     "glr-bank",
+    "px4",
+    "px4-norm",
+    "ardupilot",
+    "inav",
+    "paparazzi",
+    "altos",
 ]
 
 # Keys that a kind reads besides `kind` and `axes`.
@@ -85,6 +92,12 @@ USES: dict[Kind, tuple[str, ...]] = {
     "double-threshold": ("threshold", "trigger", "window"),
     "cusum": ("cusum",),
     "glr-bank": ("glr",),
+    "px4": (),
+    "px4-norm": (),
+    "ardupilot": (),
+    "inav": (),
+    "paparazzi": (),
+    "altos": (),
 }
 
 # Detectors of one signed axis; their arguments have the names of the keys, or of those of the kind's group.
@@ -96,8 +109,24 @@ ONE_AXIS: dict[Kind, Callable[..., Detector]] = {
     "double-threshold": DoubleThreshold,
     "cusum": Cusum,
     "glr-bank": GlrBank,
+    "px4": Px4,
+    "px4-norm": Px4Norm,
+    "ardupilot": ArduPilot,
+    "inav": Inav,
+    "paparazzi": Paparazzi,
+    "altos": AltOs,
 }
 GROUPED: tuple[Kind, ...] = ("cusum", "glr-bank")
+
+# What a launch must show to the rules of the field: m/s² beyond gravity and for how long, s.
+FIELD: dict[Kind, tuple[float, float]] = {
+    "px4": (30.0, 0.050),
+    "px4-norm": (30.0, 0.050),
+    "ardupilot": (15.0, 0.020),
+    "inav": (18.63, 0.040),
+    "paparazzi": (14.71, 0.067),
+    "altos": (20.0, 0.020),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +136,8 @@ class DetectorSettings:
     Attributes
     ----------
     kind : str
-        "multi-level-window" is the published method; the windows, the thresholds to be held and "cusum" are its rivals.
+        "multi-level-window" is the published method; the windows, the thresholds to be held and "cusum" are its rivals;
+        "px4" to "altos" fly the rules of those autopilots with their own defaults.
     threshold : float
         G2, m/s². 45.11 is 4.6 g: above a centrifuge run at 4.1 g with its noise, below the weakest launch of 5 g.
     trigger : float, optional
@@ -159,6 +189,9 @@ def need(settings: DetectorSettings) -> tuple[str, float, str, float]:
         return "cusum.reference", settings.cusum.reference, "cusum.limit", settings.cusum.limit / settings.cusum.rise
     if settings.kind == "glr-bank":
         return "glr.reference", settings.glr.reference, "glr.windows", min(settings.glr.windows)
+    if settings.kind in FIELD:
+        level, time = FIELD[settings.kind]
+        return "kind", level, "kind", time
     trigger = None if "trigger" not in USES[settings.kind] else settings.trigger
     if trigger is None:
         return "threshold", settings.threshold, "window", settings.window

@@ -1,0 +1,384 @@
+"""Rules that autopilots fly, with their defaults, as far as specific force alone decides.
+
+PX4        a > 30 m/s² for more than 50 ms, run at 50 Hz, each run worth 10 … 50 ms      gravity-free
+ArduPilot  mean of 5 values at 50 Hz ≥ 15 m/s², then 0.2 s without another look          gravity-free
+iNav       f > 18.63 m/s² (1.9 g) for 40 ms behind a 15 Hz second-order low-pass         raw
+Paparazzi  f ≥ 1.5 g at 5 calls in a row, at 60 Hz                                       raw
+AltOS      a > 20 m/s² and a speed of 5 m/s, the integral of a                           gravity-free
+
+The real ones take gravity off by attitude. Here it is the mean of the force on the rail that is taken off, over blocks
+of 0.5 s and with one block of delay, so that the launch is not in it: they see nothing in the first second. Left out
+are gates on attitude, heading and satellite speed, the filters of their estimators, and AltOS's barometer. A gap begins
+anew. Sources: the public firmware of each; ArduPilot's level is what its manual gives for throws and bungees.
+"""
+
+from math import cos, isfinite, nan, pi, sin, sqrt
+
+from uavsim.onboard.launch.axis import GRAVITY, OneAxis
+from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+
+BLOCK = 0.5  # s, over which the force on the rail is averaged
+
+
+class RailMean:
+    """Mean of the force over a block of time, of which the one before the last full one is used."""
+
+    __slots__ = ("_before", "_last", "_sum", "_time")
+
+    def __init__(self) -> None:
+        self._before = self._last = nan
+        self._sum = self._time = 0.0
+
+    def off(self, f: float, dt: float) -> float:
+        """Force less its mean, m/s²; NaN as long as there is none."""
+        if isfinite(f):
+            self._sum += f * dt
+            self._time += dt
+            if self._time * ROUNDING >= BLOCK:
+                self._before, self._last = self._last, self._sum / self._time
+                self._sum = self._time = 0.0
+        return f - self._before
+
+
+class Px4(OneAxis):
+    """PX4's launch detector on one body axis, as until March 2026.
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    threshold : float
+        m/s², without gravity.
+    hold : float
+        Time above it that is exceeded, s.
+    axis : str
+        Signed body axis that points along the launch.
+
+    Raises
+    ------
+    ValueError
+        Settings outside their bounds.
+
+    Notes
+    -----
+    A run takes the sample that is there. A NaN force is not above.
+    """
+
+    __slots__ = ("_elapsed", "_held", "_hold", "_interval", "_mean", "_threshold")
+
+    def __init__(self, rate: float, *, threshold: float = 30.0, hold: float = 0.050, axis: Axis = "+x") -> None:
+        require(
+            isfinite(threshold) and isfinite(hold) and hold > 0.0, "threshold and hold must be finite, hold above 0"
+        )
+        require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
+        self._threshold, self._hold = threshold, hold * ROUNDING
+        self._interval = 0.020 - 0.5 / rate  # s; half a sample of tolerance, so that jitter skips no run
+        super().__init__(rate, axis)
+
+    def _clear(self) -> None:
+        self._mean = RailMean()
+        self._elapsed = self._held = 0.0
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        return self._run(self._mean.off(f, dt), dt, late)
+
+    def _run(self, a: float, dt: float, late: bool) -> bool:
+        if late:
+            self._held = 0.0
+        self._elapsed += dt
+        if self._elapsed < self._interval:
+            return False
+        worth, self._elapsed = min(max(self._elapsed, 0.010), 0.050), 0.0
+        self._held = self._held + worth if a > self._threshold else 0.0
+        self.triggered = self._held > 0.0
+        return self._held > self._hold
+
+
+class Px4Norm(Px4):
+    """PX4's launch detector on the magnitude of the acceleration, as since March 2026; settings of `Px4`.
+
+    A force that is NaN along any axis is not above.
+    """
+
+    __slots__ = ("_felt", "_means")
+
+    def _clear(self) -> None:
+        super()._clear()
+        self._means = RailMean(), RailMean(), RailMean()
+        self._felt = 0.0, 0.0, 0.0
+
+    def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
+        """Take one sample; see `Detector`."""
+        self._felt = fx, fy, fz
+        return super().step(t, fx, fy, fz)
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        x, y, z = (mean.off(felt, dt) for mean, felt in zip(self._means, self._felt, strict=True))
+        return self._run(sqrt(x * x + y * y + z * z), dt, late)
+
+
+class ArduPilot(OneAxis):
+    """ArduPlane's check of the forward acceleration before an automatic take-off.
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    threshold : float
+        m/s², without gravity, that the mean of five values at 50 Hz reaches. The firmware's own default is no test.
+    delay : float
+        From then to the launch, s.
+    axis : str
+        Signed body axis that points along the launch.
+
+    Raises
+    ------
+    ValueError
+        Settings outside their bounds.
+
+    Notes
+    -----
+    A NaN force counts as no acceleration. A gap forgets the values and ends the delay.
+    """
+
+    __slots__ = ("_delay", "_elapsed", "_interval", "_mean", "_threshold", "_values", "_waited")
+
+    def __init__(self, rate: float, *, threshold: float = 15.0, delay: float = 0.2, axis: Axis = "+x") -> None:
+        require(
+            isfinite(threshold) and isfinite(delay) and delay >= 0.0, "threshold and delay must be finite, delay ≥ 0"
+        )
+        require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
+        self._threshold, self._delay = threshold, delay / ROUNDING
+        self._interval = 0.020 - 0.5 / rate  # s, as of PX4
+        super().__init__(rate, axis)
+
+    def _clear(self) -> None:
+        self._mean = RailMean()
+        self._forget()
+
+    def _forget(self) -> None:
+        self._values = (0.0,) * 5
+        self._elapsed = self._waited = 0.0
+        self.triggered = False
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        a = self._mean.off(f, dt)
+        if late:
+            self._forget()
+        if self.triggered:
+            self._waited += dt
+            return self._waited >= self._delay
+        self._elapsed += dt
+        if self._elapsed < self._interval:
+            return False
+        self._elapsed = 0.0
+        self._values = (*self._values[1:], a if a == a else 0.0)
+        self.triggered = sum(self._values) >= 5.0 * self._threshold
+        return self.triggered and self._delay <= 0.0
+
+
+class Inav(OneAxis):
+    """iNav's launch by acceleration ("bungee").
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    threshold : float
+        m/s², with gravity.
+    hold : float
+        Time above it, s.
+    cutoff : float
+        Of the low-pass, Hz; there is none where the rate is not above twice this.
+    axis : str
+        Signed body axis that points along the launch.
+
+    Raises
+    ------
+    ValueError
+        Settings outside their bounds.
+
+    Notes
+    -----
+    The low-pass begins at rest at the first force. One that is not finite is not above and passes the low-pass by.
+    """
+
+    __slots__ = ("_a1", "_a2", "_b0", "_cutoff", "_held", "_hold", "_started", "_threshold", "_z1", "_z2")
+
+    def __init__(
+        self,
+        rate: float,
+        *,
+        threshold: float = 18.63,
+        hold: float = 0.040,
+        cutoff: float = 15.0,
+        axis: Axis = "+x",
+    ) -> None:
+        require(isfinite(threshold), "threshold must be finite")
+        require(all(isfinite(x) and x > 0.0 for x in (rate, hold, cutoff)), "rate, hold and cutoff must be above 0")
+        self._threshold, self._hold = threshold, hold / ROUNDING
+        self._b0, self._a1, self._a2 = lowpass(cutoff / rate) if rate > 2.0 * cutoff else (1.0, 0.0, 0.0)
+        self._cutoff = rate > 2.0 * cutoff
+        super().__init__(rate, axis)
+
+    def _clear(self) -> None:
+        self._started = False
+        self._held = self._z1 = self._z2 = 0.0
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        if late:
+            self._clear()
+        if not isfinite(f) or not self._filtered(f) > self._threshold:
+            self._held = 0.0
+            self.triggered = False
+            return False
+        self._held += dt
+        self.triggered = True
+        return self._held >= self._hold
+
+    def _filtered(self, f: float) -> float:
+        if not self._cutoff:
+            return f
+        b0, a1, a2 = self._b0, self._a1, self._a2
+        if not self._started:
+            self._started = True
+            self._z1, self._z2 = f * (1.0 - b0), f * (b0 - a2)
+        out = b0 * f + self._z1
+        self._z1 = 2.0 * b0 * f - a1 * out + self._z2
+        self._z2 = b0 * f - a2 * out
+        return out
+
+
+class Paparazzi(OneAxis):
+    """Paparazzi's catapult module.
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    threshold : float
+        m/s², with gravity; reached is enough.
+    calls : int
+        How many in a row.
+    call_rate : float
+        Calls a second, Hz; at a lower rate of samples each is a call.
+    axis : str
+        Signed body axis that points along the launch.
+
+    Attributes
+    ----------
+    level, count, total : int
+        1, calls in a row, and those that are needed; 0 while there is none.
+
+    Raises
+    ------
+    ValueError
+        Settings outside their bounds.
+
+    Notes
+    -----
+    A NaN force at a call is one below.
+    """
+
+    __slots__ = ("_calls", "_elapsed", "_interval", "_threshold")
+
+    def __init__(
+        self,
+        rate: float,
+        *,
+        threshold: float = 1.5 * GRAVITY,
+        calls: int = 5,
+        call_rate: float = 60.0,
+        axis: Axis = "+x",
+    ) -> None:
+        require(isfinite(threshold), "threshold must be finite")
+        require(calls == int(calls) >= 1, "calls must be a whole number, at least 1")
+        require(all(isfinite(x) and x > 0.0 for x in (rate, call_rate)), "rate and call_rate must be above 0")
+        self._threshold, self._calls = threshold, calls
+        self._interval = 1.0 / call_rate - 0.5 / rate
+        super().__init__(rate, axis)
+
+    def _clear(self) -> None:
+        self._elapsed = 0.0
+        self._begin()
+
+    def _begin(self) -> None:
+        self.level = self.count = self.total = 0
+        self.triggered = False
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        if late:
+            self._begin()
+        self._elapsed += dt
+        if self._elapsed < self._interval:
+            return False
+        self._elapsed = 0.0
+        if not f >= self._threshold:
+            self._begin()
+            return False
+        self.level, self.count, self.total, self.triggered = 1, self.count + 1, self._calls, True
+        return self.count >= self._calls
+
+
+class AltOs(OneAxis):
+    """AltOS's lift-off by acceleration and speed.
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    threshold : float
+        m/s², without gravity.
+    speed : float
+        m/s, the integral of the acceleration, which does not fall below 0.
+    axis : str
+        Signed body axis that points along the launch.
+
+    Attributes
+    ----------
+    gained : float
+        That integral, m/s.
+
+    Raises
+    ------
+    ValueError
+        Settings outside their bounds.
+
+    Notes
+    -----
+    A force that is not finite is left out. A gap sets the integral to 0.
+    """
+
+    __slots__ = ("_mean", "_speed", "_threshold", "gained")
+
+    def __init__(self, rate: float, *, threshold: float = 20.0, speed: float = 5.0, axis: Axis = "+x") -> None:
+        require(isfinite(threshold) and isfinite(speed), "threshold and speed must be finite")
+        self._threshold, self._speed = threshold, speed
+        super().__init__(rate, axis)
+
+    def _clear(self) -> None:
+        self._mean = RailMean()
+        self.gained = 0.0
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        a = self._mean.off(f, dt)
+        if late:
+            self.gained = 0.0
+        if not isfinite(a):
+            return False
+        self.gained = max(0.0, self.gained + a * dt)
+        self.triggered = a > self._threshold
+        return self.triggered and self.gained > self._speed
+
+
+def lowpass(share: float) -> tuple[float, float, float]:
+    """Return b0, a1 and a2 of a second-order Butterworth low-pass; b1 = 2 b0, b2 = b0.
+
+    Parameters
+    ----------
+    share : float
+        Cutoff over sampling rate, below 0.5. Bilinear transform: R. Bristow-Johnson's cookbook with Q = 1/√2.
+    """
+    w = 2.0 * pi * share
+    alpha = sin(w) / sqrt(2.0)
+    return (1.0 - cos(w)) / (2.0 + 2.0 * alpha), -2.0 * cos(w) / (1.0 + alpha), (1.0 - alpha) / (1.0 + alpha)
