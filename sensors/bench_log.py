@@ -183,15 +183,17 @@ def _sources(
 
 def resolved(source: Source, found: Sequence[str]) -> Source:
     """Split a sign and a factor off a name that is not itself a column: `-Ay`, `ax*9.80665`, `-ax*9.80665`."""
-    name, sign = source.column, 1.0
-    if name not in found and name[:1] in ("-", "+"):
-        name, sign = name[1:].strip(), -1.0 if name[0] == "-" else 1.0
-    if name in found:
-        return Source(name, sign * source.factor)
-    match = NUMBER.fullmatch(name)
-    if match is None or match[1].strip() not in found:
-        return source
-    return Source(match[1].strip(), sign * source.factor * float(match[2]))
+    whole = source.column
+    signed = [(whole, 1.0)] + (
+        [(whole[1:].strip(), -1.0 if whole[0] == "-" else 1.0)] if whole[:1] in ("-", "+") else []
+    )
+    for name, sign in signed:
+        if name in found:
+            return Source(name, sign * source.factor)
+        match = NUMBER.fullmatch(name)
+        if match is not None and match[1].strip() in found:
+            return Source(match[1].strip(), sign * source.factor * float(match[2]))
+    return source
 
 
 def listed(names: Sequence[str], most: int = 12) -> str:

@@ -194,6 +194,33 @@ def test_a_first_flight(run: Run, tmp_path: Path) -> None:
     assert written(again) == FILES | PLOTS
 
 
+def imu() -> pd.DataFrame:
+    """Make somebody's log: 3 s at 100 Hz from -1 s on, in g, with a push of 6 g along -y at 0.5 s."""
+    t = pd.Series(range(300)) / 100.0 - 1.0
+    return pd.DataFrame({"time": t, "a x": 0.0, "a[1]": -6.0 * t.between(0.495, 0.8), "z": 1.0})
+
+
+def test_a_log_is_replayed(run: Run, tmp_path: Path) -> None:
+    imu().to_csv(tmp_path / "imu.csv", index=False)
+    names = "t=time,fx=-a[1]*9.80665,fy=a x*9.80665,fz=-z*9.80665"
+    result = run("replay", "imu.csv", "--map", names)
+    assert (result.status, result.err) == (0, "")
+    assert "imu.csv: 300 readings from -1.000 to 1.990 s, median rate 100 Hz" in result.out
+    assert "launch detected at 0.5" in result.out
+    assert result.out.endswith("written to output/imu-replay\n")
+    folder = tmp_path / "output" / "imu-replay"
+    assert written(folder) == {
+        *("scenario.toml", "score.json", "events.json", "accelerometer.parquet", "detector.parquet"),
+        "plots/launch.png",
+    }
+    score = json.loads((folder / "score.json").read_text(encoding="utf-8"))
+    assert 0.5 <= score["launch"]["detected_time"] <= 0.55
+    unseen = run("replay", "imu.csv", "--map", names, "--set", "detector.threshold=70", "--out", "b", "--no-plots")
+    assert (unseen.status, unseen.err) == (0, "")
+    assert "no launch detected; the greatest f_x is 6.00 g at 0.500 s" in unseen.out
+    assert load(tmp_path / "b").score["launch"]["detected_time"] is None
+
+
 def test_a_flights_folder_flies_again(run: Run, tmp_path: Path) -> None:
     run("fly", *SHORT, "--out", "one", "--set", "name=mine", "--seed", "5")
     assert run("fly", "one", "--no-plots", "--out", "two").status == 0
@@ -302,6 +329,18 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
         ("replay nothing", "nothing is not a flight's folder: there is no such folder"),
         ("replay full", "full is not a flight's folder: scenario.toml is missing"),
         ("replay", "Missing argument"),
+        ("replay full --map t=time", "--map: is for logs, and full is a flight's folder"),
+        ("replay full --set detector.threshold=20", "--set: is for logs, and full is a flight's folder"),
+        ("replay nothing.csv", "nothing.csv: there is no such file"),
+        ("replay full full", "full: there is no such file"),
+        ("replay file", "file: not a table of comma-separated values"),
+        ("replay log.csv", "log.csv: lacks t, fx, fy, fz; it has time, ax, p; say which is which with --map t=…,fx=…"),
+        ("replay log.csv --map t=time,fx=ay", "log.csv: has no column 'ay'; it has time, ax, p"),
+        ("replay log.csv --map t=time,fx=ax,fy=ax,fz=p", "log.csv: 2 rows with a time are too few"),
+        ("replay log.csv --map time", "'time': give it as ours=theirs"),
+        ("replay log.csv --set seed=1", "--set: 'seed=1': of a log only detector.… can be set"),
+        ("replay log.csv --set detector.treshold=1", "did you mean 'detector.threshold'?"),
+        ("replay imu.csv --map t=time,fx=a[1],fy=z,fz=z --out full", "full is not empty"),
         ("sensors bmp39", "nearest: bmp390"),
         ("sensors ../sensors", "preset '../sensors' is unknown"),
         ("sensors properties.toml", "properties.toml: "),
@@ -354,6 +393,7 @@ def test_wrong_input_is_2_with_one_line_and_nothing_written(
     (tmp_path / "broken" / "broken.xml").write_text("<fdm_config")
     (tmp_path / "properties.toml").write_text("[aircraft.properties]\nNAME = 1\n")
     (tmp_path / "log.csv").write_text("time, ax, p\n0, 1, 2\n1, 1, 2\n")
+    imu().to_csv(tmp_path / "imu.csv", index=False)
     before = set(tmp_path.rglob("*"))
     result = run(*arguments.split(" "))
     assert (result.status, result.out) == (2, "")

@@ -1,0 +1,128 @@
+"""What the detector found in somebody's recording: lines for the terminal, and the figure of the launch.
+
+The figure has the whole recording on the left, and on the right the first detection, or the greatest f_x if there is
+none, with the detector's windows below. Time is the log's own, in s.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from uavsim.truth import STANDARD_GRAVITY
+from uavsim.views.curves import thin
+from uavsim.views.figure import BLACK, BLUE, GREY, LIGHT, RED, SKY, label, legend, save, sheet
+from uavsim.views.marks import Mark, flag_all
+from uavsim.views.record import Array, Stretch, within
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from uavsim.flight import Flight
+
+HEIGHTS, WIDTHS = (3.0, 1.6, 1.2), (1.5, 1.0)
+BEFORE, AFTER = 0.5, 1.0  # s around the first detection that the right column shows
+MOST_LABELS, MOST_LINES = 10, 20  # detections that are labelled, and told on the terminal
+DOTS = 400  # readings in a stretch, up to which each is a dot
+
+
+def lines(flight: "Flight") -> list[str]:
+    """Tell what was read and what was found."""
+    of, found = flight.score["recording"], flight.score["recording"]["detections"]
+    said = [
+        f"{', '.join(of['files'])}: {of['readings']} readings from {of['start']:.3f} to {of['end']:.3f} s, "
+        f"median rate {of['rate']:.4g} Hz"
+    ]
+    if of["gaps"]:
+        longest = max(of["gaps"], key=lambda gap: gap["end"] - gap["start"])
+        length = longest["end"] - longest["start"]
+        said.append(f"gaps: {len(of['gaps'])}, the longest of {length:.3g} s at {longest['start']:.3f} s")
+    said += [
+        f"clipping: {clipped['axis']} stays at {clipped['level'] / STANDARD_GRAVITY:.3g} g for {clipped['samples']} "
+        f"readings, first at {clipped['start']:.3f} s"
+        for clipped in of["clipping"]
+    ]
+    said += [f"Warning: {remark}" for remark in of["remarks"]]
+    kind = flight.score["launch"]["detector"]
+    if not found:
+        return [*said, f"{kind}: no launch detected; the greatest f_x is {_greatest(flight)}"]
+    said += [f"{kind}: launch detected at {t:.4f} s" for t in found[:MOST_LINES]]
+    return said if len(found) <= MOST_LINES else [*said, f"… and {len(found) - MOST_LINES} more, in events.json"]
+
+
+def _greatest(flight: "Flight") -> str:
+    table = flight.accelerometer
+    row = int(np.nanargmax(table["fx"].to_numpy()))
+    return f"{table['fx'].iloc[row] / STANDARD_GRAVITY:.2f} g at {table['t'].iloc[row]:.3f} s"
+
+
+def save_plot(flight: "Flight", folder: Path) -> Path:
+    """Draw `launch.png` into a folder, which is made."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return save(draw(flight), folder / "launch.png")
+
+
+def draw(flight: "Flight") -> "Figure":
+    """Specific force and the detector's state over the whole recording and around the first detection."""
+    readings, found = flight.accelerometer, flight.score["recording"]["detections"]
+    t = readings["t"].to_numpy()
+    centre = found[0] if found else float(t[int(np.nanargmax(readings["fx"].to_numpy()))])
+    whole = float(t[0]), float(t[-1])
+    stretches: tuple[Stretch, Stretch] = (whole, (max(centre - BEFORE, whole[0]), min(centre + AFTER, whole[1])))
+    figure, axes = sheet(flight.scenario["name"], _words(flight), HEIGHTS, WIDTHS, size=(11.5, 7.0))
+    columns = list(zip(*axes, strict=True))
+    for column, stretch in zip(columns, stretches, strict=True):
+        column[0].set_xlim(*stretch)
+        _force(column, flight, stretch)
+        _windows(column[2], flight, stretch)
+        label(column[2], x="time of the log, s")
+    for row, (left, beside) in enumerate(axes):
+        label(left, ("specific force $f_x$, g", "$f_y$, $f_z$, g", "windows")[row])
+        legend(beside)
+    marks = [Mark(time, f"detected {time:.3f} s", RED) for time in found]
+    if not found:
+        marks = [Mark(centre, "greatest $f_x$", GREY)]
+    flag_all(figure, columns, [marks[:MOST_LABELS]] * 2)
+    return figure
+
+
+def _words(flight: "Flight") -> str:
+    of = flight.score["recording"]
+    found = len(of["detections"])
+    words = "no launch detected" if not found else "1 detection" if found == 1 else f"{found} detections"
+    gaps = f", {len(of['gaps'])} gaps" if len(of["gaps"]) > 1 else ", 1 gap" if of["gaps"] else ""
+    return f"{flight.score['launch']['detector']}: {words}; {of['rate']:.4g} Hz{gaps}"
+
+
+def _force(column: "Sequence[Axes]", flight: "Flight", stretch: Stretch) -> None:
+    """Specific force along x above, along y and z below, in g."""
+    for row, axis, colour in ((0, "fx", BLACK), (1, "fy", SKY), (1, "fz", BLUE)):
+        times, f = thin(*_columns(flight, "accelerometer", axis, stretch))
+        marker = "." if times.size <= DOTS else ""
+        name = f"$f_{axis[1]}$"
+        column[row].plot(times, f / STANDARD_GRAVITY, color=colour, linewidth=0.8, marker=marker, label=name)
+    name, level = _level(flight.scenario["detector"])
+    g = level / STANDARD_GRAVITY
+    column[0].axhline(g, color=RED, linewidth=1.0, label=f"{name} {g:.2f} g")
+
+
+def _level(detector: dict[str, Any]) -> tuple[str, float]:
+    """Name of the level that the force is held against, and the level, m/s²."""
+    group = next((detector[name] for name in ("cusum", "glr") if str(detector["kind"]).startswith(name)), None)
+    return ("threshold", detector["threshold"]) if group is None else ("reference", group["reference"])
+
+
+def _windows(axes: "Axes", flight: "Flight", stretch: Stretch) -> None:
+    """Samples in the window that is open, and those of them above the threshold."""
+    for name, colour, width in (("total", LIGHT, 4.0), ("count", BLUE, 1.0)):
+        times, n = thin(*_columns(flight, "detector", name, stretch))
+        axes.step(times, n, where="post", color=colour, linewidth=width, label=name)
+    axes.set_ylim(bottom=0.0)
+
+
+def _columns(flight: "Flight", table: str, name: str, stretch: Stretch) -> tuple[Array, Array]:
+    columns = flight.tables[table]
+    t, values = within(stretch, columns["t"].to_numpy(dtype=float), columns[name].to_numpy(dtype=float))
+    return t, values
