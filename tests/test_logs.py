@@ -358,13 +358,17 @@ def test_the_figure_marks_the_detections_and_keeps_the_peaks(read) -> None:
     assert len(whole.get_xdata()) < 5000
 
 
-@pytest.mark.parametrize("kind", ["cusum", "glr-bank", "single-threshold"])
-def test_any_kind_of_detector_runs_and_is_drawn(read, kind: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "level"),
+    [("cusum", "reference 4.50 g"), ("glr-bank", "reference"), ("single-threshold", "threshold 4.60 g")],
+)
+def test_any_kind_of_detector_runs_and_is_drawn_with_its_level(read, kind: str, level: str) -> None:
     flight = replay_log(read(frame()), DetectorSettings(kind=kind))
     assert flight.score["launch"]["detector"] == kind
     (found,) = flight.score["recording"]["detections"]
     assert ONSET < found < ONSET + 0.1
-    assert view.draw(flight).axes
+    lines = [str(line.get_label()) for line in view.draw(flight).axes[0].lines]
+    assert any(line.startswith(level) for line in lines)
 
 
 # -- PX4 and ArduPilot -----------------------------------------------------------------------------------------------

@@ -103,15 +103,18 @@ def _force(column: "Sequence[Axes]", flight: "Flight", stretch: Stretch) -> None
         marker = "." if times.size <= DOTS else ""
         name = f"$f_{axis[1]}$"
         column[row].plot(times, f / STANDARD_GRAVITY, color=colour, linewidth=0.8, marker=marker, label=name)
-    name, level = _level(flight.scenario["detector"])
-    g = level / STANDARD_GRAVITY
-    column[0].axhline(g, color=RED, linewidth=1.0, label=f"{name} {g:.2f} g")
+    for name, level in _levels(flight.scenario["detector"]).items():
+        g = level / STANDARD_GRAVITY
+        column[0].axhline(g, color=RED, linewidth=1.0, label=f"{name} {g:.2f} g")
 
 
-def _level(detector: dict[str, Any]) -> tuple[str, float]:
-    """Name of the level that the force is held against, and the level, m/s²."""
-    group = next((detector[name] for name in ("cusum", "glr") if str(detector["kind"]).startswith(name)), None)
-    return ("threshold", detector["threshold"]) if group is None else ("reference", group["reference"])
+def _levels(detector: dict[str, Any]) -> dict[str, float]:
+    """Level that the force is held against, m/s², by its name; none of the rules that have their own."""
+    kind = detector["kind"]
+    group = next((detector[name] for name in ("cusum", "glr") if kind.startswith(name)), None)
+    if group is not None:
+        return {"reference": group["reference"]}
+    return {"threshold": detector["threshold"]} if kind.endswith(("window", "threshold")) else {}
 
 
 def _windows(axes: "Axes", flight: "Flight", stretch: Stretch) -> None:
