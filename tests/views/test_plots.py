@@ -329,3 +329,20 @@ def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_p
     flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", heavy])
     assert flight.score["outcome"] == "diverged"
     assert plots.save_plots(flight, tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "levels"),
+    [
+        ("multi-level-window", {"$G_1$ = $G_2$": 4.6}),
+        ("sliding-window", {"level": 4.6}),
+        ("cusum", {"level": 4.5}),
+        ("px4", {}),
+    ],
+)
+def test_the_launch_figure_draws_the_levels_that_the_kind_reads(kind: str, levels: dict[str, float]) -> None:
+    from uavsim.views import launch
+    from uavsim.views.record import Record
+
+    flight = uavsim.fly("catapult", overrides=[f"detector.kind={kind}", "duration=6"])
+    assert launch._levels(Record(flight)) == pytest.approx(levels, abs=0.01)

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.onboard.launch.settings import USES
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
 from uavsim.views.marks import flag_all
@@ -90,9 +91,15 @@ def _force(column: "Sequence[Axes]", record: Record, stretch: Stretch, origin: f
 
 
 def _levels(record: Record) -> dict[str, float]:
-    """Levels of the detector, in g."""
+    """Levels of the detector that its kind reads, in g."""
     settings = record.settings("detector")
+    used = USES[settings["kind"]]
+    if "threshold" not in used:
+        group: dict[str, Any] = next((settings[name] for name in used if isinstance(settings.get(name), dict)), {})
+        return {"level": group["reference"] / STANDARD_GRAVITY} if "reference" in group else {}
     threshold = settings["threshold"]
+    if "trigger" not in used:
+        return {"level": threshold / STANDARD_GRAVITY}
     trigger = settings.get("trigger", threshold)
     if trigger == threshold:
         return {"$G_1$ = $G_2$": threshold / STANDARD_GRAVITY}
@@ -142,8 +149,11 @@ def _draw_windows(column: "Sequence[Axes]", record: Record, windows: _Windows) -
     settings, x = record.settings("detector"), windows.x
     share, level = column
     share.plot(x, windows.share, color=BLUE, linewidth=1.0, marker=".", markersize=3.5, label="share above $G_2$")
-    ratio, levels = settings["ratio"], settings["levels"]
-    share.axhline(ratio, color=RED, linewidth=1.0, linestyle="--", label=f"$k_1$ = {ratio:g}")
+    used = USES[settings["kind"]]
+    levels = settings["levels"] if "levels" in used else 1
+    if "ratio" in used:
+        ratio = settings["ratio"]
+        share.axhline(ratio, color=RED, linewidth=1.0, linestyle="--", label=f"$k_1$ = {ratio:g}")
     for rows, fill, colour, name in (
         (windows.ended, "none", BLUE, "ends below $k_1$"),
         (windows.recognised, "full", RED, "recognised"),
