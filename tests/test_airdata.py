@@ -1,7 +1,9 @@
 """Air data against published tables and independent codes; every tolerance is that of the authority's own digits."""
 
 import doctest
+import importlib
 import math
+import pkgutil
 
 import numpy as np
 import pytest
@@ -11,8 +13,9 @@ from hypothesis import strategies as st
 from uavsim import airdata
 
 
-def test_examples():
-    assert doctest.testmod(airdata).failed == 0
+@pytest.mark.parametrize("module", [module.name for module in pkgutil.iter_modules(airdata.__path__)])
+def test_examples(module):
+    assert doctest.testmod(importlib.import_module(f"{airdata.__name__}.{module}")).failed == 0
 
 
 def vapour_fraction(celsius, pressure, humidity):
