@@ -1,0 +1,291 @@
+"""Airspeed from two pressures and the accelerometer, from the rail to cruise.
+
+    waiting --launch recognised--> replay of the last 0.3 s --> flying        (rearmed: back to waiting)
+
+Waiting, the pressures are filtered by themselves (`jump_adaptive`) and the root is taken last; the tare of the pair and
+the mean of f_x at rest are taken, and the last readings of both kinds kept. A recognised launch comes tens of
+milliseconds late, 2.9 m/s at 10 g and 30 ms; so the energy-rate filter (`energy`) starts before it, from the kept
+readings, with V = 0 and the wind's standard deviation.
+
+Flying, the filter stands at the middle of the last total pressure's conversion, less the lag of its tube: that is the
+instant which the reading is of. What is told is predicted from there to the time of the reading. A static pressure is
+of another instant, some milliseconds away; over those it moves by ρ V s, and what moves it beside is far below its
+noise, so it is compared across. The specific force between is in `speed_gained`, so that a reading of it costs a sum.
+
+At first V is as likely below 0 as above, and a total pressure, even in V, would split what is known in two. It is left
+out until the push has brought V to 3 σ_V; what it would have said of the wind, later ones say better.
+
+The specific force bends the membranes: of that pressure error the known part is taken off, and what is not known of its
+coefficient is a state. The scale error of the accelerometer, σ_k, is a bias that comes and goes with the push: b gains
+the variance σ_k² |Δ(f²)| when the mean specific force f changes.
+
+Airspeed is valid from V = 8 σ_V on, which is 2 V* of the pressures' law (`paper`) and holds for a coasting filter, too.
+"""
+
+from collections import deque
+from math import expm1, inf, log1p, nan, sqrt
+
+from uavsim import airdata
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MAX_TEMPERATURE, MIN_TEMPERATURE
+from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
+from uavsim.onboard.airspeed.interface import Estimate, NoiseModel, TareWindow
+from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
+from uavsim.onboard.airspeed.rest_force import RestForce
+from uavsim.onboard.airspeed.settings import EstimatorSettings
+from uavsim.onboard.airspeed.speed_gained import SpeedGained
+
+ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
+TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
+VALID = 8.0  # σ_V
+ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
+PATIENCE = 1.0  # s after the recognition; then total pressures are taken all the same
+SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
+GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
+OLDEST = 0.05  # s; a reading that is further behind the filter is not taken
+ALONE = 0.02  # s; a static pressure so far ahead of the filter comes without a total pressure: it goes on by itself
+SLOWEST = 1.0  # m/s; below it the gust's correlation time is that of this airspeed
+ANYWHERE = 1e3  # Pa; what a static pressure is off by before one has been read
+
+Row = tuple[float, float, float, float, float, float]
+
+
+class AidedFilter:
+    """The aided estimator, stepped with each reading of the head and of the accelerometer.
+
+    Parameters
+    ----------
+    settings : EstimatorSettings
+        Its tuning.
+    noise : NoiseModel
+        What it believes of the sensors.
+    tare_window : tuple of float, optional
+        As of `PaperFilter`.
+
+    Attributes
+    ----------
+    flying : bool
+        Whether the energy-rate filter runs.
+    energy : EnergyFilter
+        It; of no meaning before.
+    time : float
+        The instant that it stands at, s.
+    """
+
+    __slots__ = (
+        "_density", "_force", "_gained", "_gas", "_gust", "_heat", "_held", "_held_count", "_noise", "_on_rail",
+        "_patience", "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings", "_settled",
+        "_static_age", "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature",
+        "_temperature_share", "_total_age", "_total_variance", "_u", "_w", "_waiting", "energy", "flying", "time",
+    )  # fmt: skip
+
+    def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
+        self._settings, self._noise = settings, noise
+        self._waiting = JumpAdaptive(settings, noise, tare_window)
+        self._tare_end = -inf if tare_window is None else tare_window[1]
+        self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate)
+        self._rest = RestForce(noise.accelerometer_sd)
+        self._rows: deque[Row] = deque(maxlen=ROWS)
+        self._total_age = 0.5 * noise.total_window + noise.total_lag
+        self._static_age = 0.5 * noise.static_window + noise.static_lag
+        self._total_variance, self._static_variance = noise.total_sd**2, noise.static_sd**2
+        self._scale_variance = noise.accelerometer_scale_sd**2
+        aided = settings.aided
+        gust = max(aided.gust_sd, aided.gust_floor)
+        self._gust = 2.0 * gust * gust / aided.gust_length
+        self._same = SAME * noise.accelerometer_sd / sqrt(max(1.0, noise.total_window * noise.accelerometer_rate))
+        self._held, self._held_count, self._force = 0.0, 1, 0.0
+        self._on_rail = aided.on_rail
+        self._temperature_share = 0.5 * noise.temperature_sd
+        self._raw_scale = self._waiting.scale
+        self.flying = False
+        self.time = self._t = self._t_total = self._t_static = -inf
+        self._temperature = self._density = self._gas = self._heat = nan
+        self._tare = 0.0
+        self._settled, self._patience = False, inf
+        self._u = self._w = 0.0
+        self.energy = self._begin(-inf)
+
+    # -- readings ----------------------------------------------------------------------------------------------------
+
+    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Take one reading of specific force; see `Estimator`."""
+        self._gained.add(t, fx)
+        if not self.flying:
+            self._rest.add(t, fx)
+
+    def step(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        """Take one reading of the head; as `PaperFilter.step`, the pressures being the filter's own at `t`."""
+        if self.flying:
+            return self._fly(t, p_total, p_static, temperature, t_total, t_static)
+        self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
+        return self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
+
+    def launched(self, t: float) -> None:
+        """Start the energy-rate filter before a launch that has been recognised at `t`, and bring it up to date."""
+        if self.flying or not t > -inf:
+            return
+        start = max(t - self._settings.aided.replay, self._gained.oldest, self._tare_end)
+        start = min(start, t)
+        self.energy = self._begin(start)
+        self.flying = True
+        self.time = self._t = start
+        self._u, self._w = self._gained.at(start)
+        self._held, self._held_count = 0.0, 1
+        self._settled, self._patience = False, t + PATIENCE
+        self._t_total = self._t_static = -inf
+        for row in self._rows:
+            if row[4] - self._total_age > start or row[5] - self._static_age > start:
+                self._fly(*row)
+        self._rows.clear()
+
+    def rearmed(self, t: float) -> None:
+        """Go back to waiting: the launch was none."""
+        self.flying = False
+        self._rest.forget()
+
+    def _begin(self, start: float) -> EnergyFilter:
+        aided, noise = self._settings.aided, self._noise
+        static = self._waiting.static.value
+        known = 0.0 < static < inf
+        self._tare, tare_variance = self._waiting.tare()
+        warm = self._waiting.temperature
+        self._warm(warm if warm > 0.0 else airdata.STANDARD_TEMPERATURE)
+        rest, rest_sd = self._rest.result(start)
+        return EnergyFilter(
+            speed_sd=self._settings.wind_sd,
+            rest_force=rest,
+            rest_sd=rest_sd,
+            bias_sd=aided.bias_sd,
+            bias_time=aided.bias_time,
+            slope_rate=aided.slope_rate,
+            slope_time=aided.slope_time,
+            static=static if known else airdata.STANDARD_PRESSURE,
+            static_sd=ANYWHERE,
+            static_walk=aided.static_walk,
+            difference_sd=sqrt(tare_variance),
+            difference_walk=noise.walk,
+            acceleration_sd=noise.acceleration_sd,
+        )
+
+    # -- flight ------------------------------------------------------------------------------------------------------
+
+    def _fly(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        if not t > self._t:
+            return None
+        self._t = t
+        energy = self.energy
+        if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
+            if temperature != self._temperature:
+                self._warm(temperature)
+        else:
+            temperature = nan
+        self._density = energy.p / self._gas
+        nis_total = nis_static = nan
+        new_static = t_static > self._t_static
+        if t_total > self._t_total:
+            self._t_total = t_total
+            if 0.0 < p_total < inf:
+                self._advance(t_total - self._total_age)
+                if new_static:
+                    self._t_static, new_static = t_static, False
+                    nis_static = self._take_static(p_static, t_static - self._static_age)
+                nis_total = self._take_total(p_total, t_total)
+        if new_static:
+            self._t_static = t_static
+            at = t_static - self._static_age
+            if 0.0 < p_static < inf and at - self.time > ALONE:
+                self._advance(at)
+            nis_static = self._take_static(p_static, at)
+        raw = nan
+        if 0.0 < p_total < inf and 0.0 < p_static < inf and temperature > 0.0:  # as `airdata.compressible_airspeed`
+            excess = (p_total - self._tare - p_static) / p_static
+            raw = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess))) if excess > 0.0 else 0.0
+        return self._tell(t, raw, nis_total, nis_static)
+
+    def _warm(self, temperature: float) -> None:
+        """Take a temperature of the air."""
+        self._temperature, self._gas = temperature, GAS_CONSTANT_DRY_AIR * temperature
+        self._heat = SEVEN_R * temperature * self._raw_scale * self._raw_scale
+
+    def _advance(self, to: float) -> None:
+        """Predict to a later time; an earlier one leaves the filter where it is."""
+        dt = to - self.time
+        if not dt > 0.0:
+            return
+        energy = self.energy
+        u, w = self._gained.at(to)
+        gained = u - self._u
+        force = self._force = gained / dt - self._rest.mean
+        variance = self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
+        energy.predict(dt, gained, variance, self._density, force > self._on_rail)
+        self.time, self._u, self._w = to, u, w
+
+    def _take_static(self, reading: float, at: float) -> float:
+        energy = self.energy
+        ahead = self.time - at
+        if not (0.0 < reading < inf and -OLDEST < ahead < OLDEST):
+            return nan
+        return energy.static(reading, self._static_variance, self._density * energy.v * ahead)
+
+    def _take_total(self, reading: float, end: float) -> float:
+        energy = self.energy
+        noise = self._noise
+        behind = self.time - (end - self._total_age)
+        if behind > OLDEST:
+            return nan
+        if not self._settled:
+            if energy.v * energy.v < ONE_SIDED * energy.vv and self.time < self._patience:
+                return nan
+            self._settled = True
+        before, pushed = self._held, self._push(end - noise.total_lag)
+        energy.bb += self._scale_variance * abs(pushed * pushed - before * before)
+        variance = self._total_variance
+        if behind > 0.0:  # an older reading than the filter has taken: as if V had not moved by more than its gust
+            slope = self._density * energy.v
+            reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
+            variance += slope * slope * self._gust * abs(energy.v) * behind
+        return energy.total(reading - self._tare - noise.acceleration * pushed, variance, pushed, self._heat)
+
+    def _push(self, end: float) -> float:
+        """Mean specific force above that at rest over the total pressure's conversion, m/s².
+
+        In flight it is that since the last reading: it changes too slowly for the difference to count. Held, and
+        averaged, while it does not change by more than its noise: a slope that is noise would make the filter believe
+        that it learns k from it.
+        """
+        found = self._force
+        if not (-GENTLE < found < GENTLE and -GENTLE < self._held < GENTLE):
+            window = self._noise.total_window or 1.0 / self._noise.accelerometer_rate
+            at = self._gained.at
+            found = (at(end)[0] - at(end - window)[0]) / window - self._rest.mean
+        if abs(found - self._held) < self._same:
+            self._held_count += 1
+            self._held += (found - self._held) / self._held_count
+        else:
+            self._held, self._held_count = found, 1
+        return self._held
+
+    def _tell(self, t: float, raw: float, nis_total: float, nis_static: float) -> Estimate:
+        """Predict to the time of the reading and say what is known."""
+        energy = self.energy
+        dt = t - self.time
+        if dt < 0.0:  # noqa: PLR1730 - a call of max costs a tenth of a microsecond
+            dt = 0.0
+        u, w = self._gained.at(t)
+        gained = u - self._u
+        drift = energy.b + energy.s
+        speed = energy.v + gained - dt * drift
+        variance = energy.vv + dt * (dt * (energy.bb + 2.0 * energy.bs + energy.ss) - 2.0 * (energy.vb + energy.vs))
+        variance += self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
+        static = energy.p - self._density * energy.v * energy.s * dt
+        if speed < 0.0:  # noqa: PLR1730
+            speed = 0.0
+        share = self._temperature_share * speed / self._temperature
+        sd = sqrt(variance + share * share)
+        y = 1.0 + speed * speed / self._heat
+        total = static * y * y * y * sqrt(y)
+        return t, speed, sd, raw, total, static, speed >= VALID * sd, nis_total, nis_static

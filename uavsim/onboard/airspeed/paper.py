@@ -1,0 +1,214 @@
+"""Airspeed from the readings of an air-data head: filter the pressures, then take the root.
+
+The published method that this project tests: total and static pressure are random walks, each seen through white
+noise, and each has a scalar Kalman filter (its Algorithm 1 with f(x) = h(x) = x). A new reading z does
+
+    P⁻ = P + Q,    K = P⁻/(P⁻ + R),    x = x + K·(z − x),    P = (1 − K)·P⁻ = K·R
+
+with Q the growth of the walk's variance a sample and R the variance of a reading, both Pa². K settles where
+K²/(1 − K) = Q/R (`steady_gain`). NIS, the innovation squared over what the filter expects of it, (z − x)²/(P⁻ + R),
+has the mean 1 if pressure and sensor are as the filter believes. The airspeed follows from the filtered pressures and
+the measured temperature by `airdata`; the mean of p_t − p_s under the cover, the pair's tare, is taken off p_t first.
+
+Standard deviation of the airspeed
+----------------------------------
+With σ the standard deviation of p_t − p_s as the filter knows it, Bernoulli's V²·ρ/2 = p_t − p_s sets a speed below
+which the noise hides the airspeed and above which it is small:
+
+    V* = √(2σ/ρ),        σ_V = σ/(ρ·V) = V*²/(2·V)   for V ≫ V*
+
+The second is the derivative of the root and within 5 % from V = 1.9·V* on. At V = 0 it has no meaning: there p_t − p_s
+is Gaussian about 0 and clipped, E[V²] = (2/ρ)·σ/√(2π) = 0.399·V*², an rms error of 0.632·V*. Stopping the law at
+0.8·V*, σ_V = V*²/(2·max(V, 0.8·V*)), gives 0.625·V* there and joins the two. An airspeed is called valid from 2·V* on,
+4σ of p_t − p_s; below V* nothing better is known than what the wind may be, so σ_V is never above `wind_sd` there.
+
+Compressibility changes the slope, not the law: for the isentropic relation dV/dp_t = 1/(ρ₀·V) with the stagnation
+density ρ₀ = ρ·(p_t/p_s)^(1/γ), and for either relation dV/dp_s = −(p_t/p_s)·dV/dp_t, which holds the share of p_s in
+the density. Temperature adds dV/dT = V/(2T). So, with τ² the variance of the tare,
+
+    σ² = P_t + τ² + (p_t/p_s)²·P_s,        σ_V² = [V*²/(2·max(V, 0.8·V*))·ρ/ρ₀]² + [V·σ_T/(2T)]²
+"""
+
+from collections.abc import Callable
+from math import inf, isnan, nan, sqrt
+
+from uavsim import airdata
+from uavsim.airdata import MAX_TEMPERATURE, MIN_TEMPERATURE
+from uavsim.onboard.airspeed.interface import Estimate, NoiseModel
+from uavsim.onboard.airspeed.random_walk import Channel, RandomWalk, process_noise
+from uavsim.onboard.airspeed.settings import EstimatorSettings
+from uavsim.onboard.airspeed.tare import Tare
+
+FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the clipped root
+VALID = 2.0  # V*; from here on the airspeed is called valid
+
+
+class PaperFilter:
+    """The published estimator, stepped with each reading of the head.
+
+    Parameters
+    ----------
+    settings : EstimatorSettings
+        Its tuning.
+    noise : NoiseModel
+        What it believes of the sensors.
+    tare_window : tuple of float, optional
+        Readings with tare_window[0] < t ≤ tare_window[1], s, are under the cover: their mean p_t − p_s is the tare,
+        and up to the second time the airspeed is held at 0. None: no tare and no cover.
+
+    Notes
+    -----
+    A reading that is NaN, infinite or ≤ 0 Pa (for the thermometer: outside 150–400 K) is missing. A missing pressure
+    lets that channel's variance grow; a missing temperature leaves the last one in use. Without a reading in its
+    window the tare is 0.
+    """
+
+    __slots__ = (
+        "_compressible",
+        "_heating",
+        "_relation",
+        "_scale",
+        "_star",
+        "_static",
+        "_t",
+        "_t_static",
+        "_t_total",
+        "_tare",
+        "_tare_variance",
+        "_taring",
+        "_temperature",
+        "_temperature_share",
+        "_total",
+        "_wind_sd",
+    )
+
+    def __init__(
+        self, settings: EstimatorSettings, noise: NoiseModel, tare_window: tuple[float, float] | None = None
+    ) -> None:
+        self._total, self._static = self._channels(settings, noise)
+        self._compressible = settings.model == "compressible"
+        self._relation: Callable[[float, float, float], float] = (
+            airdata.compressible_airspeed if self._compressible else airdata.bernoulli_airspeed
+        )
+        # Airspeed over that of dry air with K = 1; the lighter moist air is faster for the same pressures.
+        reference = {"pressure": 101_325.0, "temperature": 288.15, "compressibility": 1.0}
+        moist = airdata.moist_air_density(**reference, vapour_fraction=settings.vapour_fraction)
+        scale_squared = settings.calibration**2 * airdata.moist_air_density(**reference) / moist
+        self._scale = sqrt(scale_squared)
+        self._star = scale_squared * 2.0 * airdata.MOLAR_GAS_CONSTANT / airdata.MOLAR_MASS_DRY_AIR
+        self._heating = 0.5 * (airdata.GAMMA - 1.0) / (airdata.GAMMA * airdata.GAS_CONSTANT_DRY_AIR * scale_squared)
+        self._temperature_share = 0.5 * noise.temperature_sd
+        self._wind_sd = settings.wind_sd
+        self._t = self._t_total = self._t_static = -inf
+        self._temperature = nan
+        self._tare = self._tare_variance = 0.0
+        self._taring = None if tare_window is None else Tare(*tare_window, noise)
+
+    @staticmethod
+    def _channels(settings: EstimatorSettings, noise: NoiseModel) -> tuple[Channel, Channel]:
+        q_total, q_static = process_noise(settings, noise)
+        return RandomWalk(q_total, noise.total_sd**2), RandomWalk(q_static, noise.static_sd**2)
+
+    def step(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        """Take one reading of the head and say what is known after it.
+
+        Parameters
+        ----------
+        t : float
+            Time of the reading, s.
+        p_total, p_static : float
+            Pressures, Pa.
+        temperature : float
+            Of the air, K.
+        t_total, t_static : float
+            End of the conversions that the pressures come from, s. One that is not later than the channel's last
+            brings no information and is not taken again.
+
+        Returns
+        -------
+        tuple or None
+            t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid, nis_total, nis_static, as `Estimate`;
+            airspeed_raw is that of this reading alone, NaN where it lacks something; the pressures are the filtered
+            ones, p_total tared; the last two are NaN where a channel has no new conversion. None if t is NaN or not
+            later than the last.
+        """
+        if not t > self._t:
+            return None
+        self._t = t
+        new_total, new_static = t_total > self._t_total, t_static > self._t_static
+        if new_total:
+            self._t_total = t_total
+            self._total.add(p_total)
+        if new_static:
+            self._t_static = t_static
+            self._static.add(p_static)
+        if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
+            self._temperature = temperature
+        else:
+            temperature = nan
+        measured = 0.0 < p_total < inf and 0.0 < p_static < inf
+        covered = False
+        if self._taring is not None:
+            covered = t <= self._taring.end
+            if covered:
+                self._taring.add(t, p_total - p_static if measured else nan, new_total, new_static)
+            else:
+                self._tare, self._tare_variance = self._taring.result()
+                self._taring = None
+
+        tare = self._tare
+        raw = self._scale * self._relation(p_total - tare, p_static, temperature) if measured else nan
+        total, static = self._total.value - tare, self._static.value
+        speed = self._scale * self._relation(total, static, self._temperature)
+        nis_total, nis_static = self._total.nis if new_total else nan, self._static.nis if new_static else nan
+        if covered or isnan(speed):
+            return t, 0.0, self._wind_sd, raw, total, static, False, nis_total, nis_static
+        sd, valid = self._spread(speed, total / static, static)
+        return t, speed, sd, raw, total, static, valid, nis_total, nis_static
+
+    def _spread(self, speed: float, ratio: float, static: float) -> tuple[float, bool]:
+        """Return the airspeed's standard deviation and whether it is valid, by the law above."""
+        temperature = self._temperature
+        sigma = sqrt(self._total.variance + self._tare_variance + ratio * ratio * self._static.variance)
+        star_squared = self._star * temperature * sigma / static
+        star = sqrt(star_squared)
+        if self._compressible and speed > 0.0:  # ρ/ρ₀ = (T_t/T)/(p_t/p_s)
+            star_squared *= (1.0 + self._heating * speed * speed / temperature) / ratio
+        floor = FLOOR * star
+        at = speed if speed > floor else floor
+        pressure_share = 0.5 * star_squared / at if at > 0.0 else 0.0  # at = 0 only without any noise
+        temperature_share = self._temperature_share * speed / temperature
+        sd = sqrt(pressure_share * pressure_share + temperature_share * temperature_share)
+        if speed < star and sd > self._wind_sd:
+            sd = self._wind_sd
+        return sd, speed >= VALID * star
+
+    @property
+    def static(self) -> Channel:
+        """The filter of the static pressure."""
+        return self._static
+
+    @property
+    def temperature(self) -> float:
+        """Last temperature measured, K; NaN before."""
+        return self._temperature
+
+    @property
+    def scale(self) -> float:
+        """Airspeed over that of dry air with K = 1."""
+        return self._scale
+
+    def tare(self) -> tuple[float, float]:
+        """Return the pair's tare, Pa, and its variance, Pa², by now."""
+        return (self._tare, self._tare_variance) if self._taring is None else self._taring.result()
+
+    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Leave a reading of specific force aside: the pressures alone count."""
+
+    def launched(self, t: float) -> None:
+        """Need not know of a launch."""
+
+    def rearmed(self, t: float) -> None:
+        """Need not know that it was none."""

@@ -1,0 +1,59 @@
+"""What f_x reads at rest on the rail: g·sin(elevation) and the bias together.
+
+Means over blocks of half a second; the one before the last is used, which holds nothing of a stroke that has begun.
+"""
+
+from math import inf, sqrt
+
+BLOCK = 0.5  # s
+WANDER = 0.02  # m/s², what a mean is off by beside its noise: the bias since then
+UNKNOWN = 5.0  # m/s², standard deviation while nothing has been read: that of a rail of up to 30°
+
+
+class RestForce:
+    """Block means of f_x before a launch.
+
+    Parameters
+    ----------
+    sd : float
+        Noise of one reading, m/s².
+
+    Attributes
+    ----------
+    mean : float
+        The last answer, m/s².
+    """
+
+    __slots__ = ("_count", "_done", "_last", "_sd", "_start", "_sum", "mean")
+
+    def __init__(self, sd: float) -> None:
+        self._sd = sd
+        self.mean = 0.0
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin again."""
+        self._start, self._sum, self._count = -inf, 0.0, 0
+        self._last = self._done = (0.0, 0)  # mean, readings
+
+    def add(self, t: float, f: float) -> None:
+        """Take a reading; one that is no number is passed over."""
+        if not (-inf < f < inf and -inf < t < inf):
+            return
+        if t - self._start >= BLOCK:
+            if self._count:
+                self._done, self._last = self._last, (self._sum / self._count, self._count)
+            self._start, self._sum, self._count = t, 0.0, 0
+        self._sum += f
+        self._count += 1
+
+    def result(self, start: float) -> tuple[float, float]:
+        """Return mean and standard deviation, m/s², of a block that was over by `start`, s, or of what there is."""
+        mean, count = self._last if self._start <= start else self._done
+        if not count:
+            mean, count = self._last
+        if not count:
+            self.mean = 0.0
+            return 0.0, UNKNOWN
+        self.mean = mean
+        return mean, sqrt(self._sd * self._sd / count + WANDER * WANDER)

@@ -1,0 +1,88 @@
+"""Which airspeed estimator is flown, and its settings."""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from annotated_types import Interval
+
+from uavsim import airdata
+
+
+@dataclass(frozen=True, slots=True)
+class AidedSettings:
+    """What the aided filter believes of air and aircraft; its sensors are in `NoiseModel`.
+
+    Attributes
+    ----------
+    gust_sd : float
+        Standard deviation of the turbulence along the flight path, m/s; less than the floor is taken for it.
+    gust_floor : float
+        The least, m/s: what calm air has.
+    gust_length : float
+        Its scale length, m: the gust's correlation time is that over the airspeed.
+    slope_rate : float
+        How fast the climb's share of gravity, g·sin γ, wanders in flight, (m/s²)/√s.
+    slope_time : float
+        How long it remembers a climb, s; its standard deviation is slope_rate·√(slope_time/2).
+    bias_sd : float
+        What f_x is off by, m/s²: the part's bias, and in flight the angle of attack, which turns f_x from the path.
+    bias_time : float
+        Correlation time of that in flight, s.
+    static_walk : float
+        What moves the static pressure beside the climb, Pa/√s.
+    on_rail : float
+        The aircraft is on its rail, where slope and angle of attack are fixed, while the mean specific force between
+        two readings is by so much above that at rest, m/s².
+    replay : float
+        How long before its recognition a launch is replayed from, s; it has to begin on the rail.
+    """
+
+    gust_sd: Annotated[float, Interval(ge=0.0, le=20.0)] = 0.2
+    gust_floor: Annotated[float, Interval(gt=0.0, le=5.0)] = 0.2
+    gust_length: Annotated[float, Interval(gt=1.0, le=5000.0)] = 200.0
+    slope_rate: Annotated[float, Interval(gt=0.0, le=50.0)] = 0.7
+    slope_time: Annotated[float, Interval(gt=0.1, le=1000.0)] = 5.0
+    bias_sd: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.3
+    bias_time: Annotated[float, Interval(gt=0.01, le=1000.0)] = 5.0
+    static_walk: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.3
+    on_rail: Annotated[float, Interval(gt=0.0, le=500.0)] = 20.0
+    replay: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class EstimatorSettings:
+    """Which airspeed estimator is flown, and its settings.
+
+    Attributes
+    ----------
+    kind : str
+        "paper", the published method; "paper-filterpy", the same through the filterpy package; "constant-velocity" and
+        "jump-adaptive", other filters of the two pressures; "aided", which takes in the accelerometer.
+    model : str
+        Relation of pressures and airspeed, "compressible" or "bernoulli"; the aided filter has the first only.
+    gain_total, gain_static : float
+        Steady gains of the two filters: Q is set so that a sensor of the noise that the part's description says gets
+        them. A quieter part of another description gets the same gain; what `[mismatch]` makes the filter believe does
+        change it.
+    q_total, q_static : float or None
+        Q itself, growth of the pressure's variance from one sample to the next, Pa², in place of the gain.
+    wind_sd : float
+        Standard deviation of the airspeed while nothing is measured, m/s: that of the wind.
+    vapour_fraction : float
+        Mole fraction of water vapour in the air.
+    calibration : float
+        K, which multiplies the airspeed.
+    aided : group
+        Of the aided filter.
+    """
+
+    kind: Literal["paper", "paper-filterpy", "constant-velocity", "jump-adaptive", "aided"] = "paper"
+    model: airdata.Model = "compressible"
+    gain_total: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.8
+    gain_static: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.3
+    q_total: Annotated[float, Interval(gt=0.0, le=1e8)] | None = None
+    q_static: Annotated[float, Interval(gt=0.0, le=1e8)] | None = None
+    wind_sd: Annotated[float, Interval(gt=0.0, le=100.0)] = 3.0
+    vapour_fraction: Annotated[float, Interval(ge=0.0, le=0.2)] = 0.0
+    calibration: Annotated[float, Interval(gt=0.0, le=10.0)] = 1.0
+    aided: AidedSettings = field(default_factory=AidedSettings)

@@ -1,0 +1,278 @@
+"""How well the airspeed can be known: the posterior Cramér-Rao bound of what the aided filter is given.
+
+For any estimator of the state x_k from readings up to k the mean square error is at least J_k⁻¹, with the information
+
+    J_{k+1} = D₂₂ − D₁₂ᵀ (J_k + D₁₁)⁻¹ D₁₂,    D₁₁ = E[Fᵀ Q⁻¹ F],  D₁₂ = −E[Fᵀ] Q⁻¹,  D₂₂ = Q⁻¹ + E[Hᵀ R⁻¹ H]
+
+(Tichavský, Muravchik & Nehorai 1998, eqs. 22–26, additive Gaussian noise). E is the mean over the true courses of many
+flights, never over estimates. The model is the filter's own, `onboard.airspeed.energy`: accelerometer, total and static
+pressure, temperature and the tare on the rail; no attitude. The turbulence is that which is declared, with its floor.
+
+The bound holds for the mean over flights, not for one of them. Where F differs between flights and Q is small, E[Fᵀ
+Q⁻¹ F] credits the estimator with that difference: the bound is then lower than any filter gets, never higher.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR
+from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
+from uavsim.onboard.airspeed.aided import ANYWHERE, SLOWEST
+from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
+
+Array = NDArray[np.float64]
+
+V, B, P, S, D, K = range(6)  # the states: airspeed, bias, static pressure, slope, difference, acceleration
+SIZE = 6
+PARAMETER_WALK = 1e-3  # of k's standard deviation, 1/√s: Q must be regular
+
+
+class Information:
+    """Fisher information on a state, with expectations over flights.
+
+    Parameters
+    ----------
+    initial : ndarray
+        Shape (n, n): J₀, the inverse of the covariance at the start.
+    """
+
+    def __init__(self, initial: Array) -> None:
+        self.matrix: Array = np.array(initial, dtype=np.float64)
+
+    def predict(self, transition: Array, noise: Array) -> None:
+        """Go a step on.
+
+        Parameters
+        ----------
+        transition : ndarray
+            Shape (m, n, n): F on each of m true courses.
+        noise : ndarray
+            Shape (n, n): Q, regular.
+        """
+        inverse = np.linalg.inv(noise)
+        mean = transition.mean(axis=0)
+        d12 = -mean.T @ inverse
+        d11 = np.einsum("mji,jk,mkl->il", transition, inverse, transition, optimize=True) / len(transition)
+        j = inverse - d12.T @ np.linalg.solve(self.matrix + d11, d12)
+        self.matrix = 0.5 * (j + j.T)
+
+    def update(self, slopes: Array, variance: float) -> None:
+        """Take a scalar reading.
+
+        Parameters
+        ----------
+        slopes : ndarray
+            Shape (m, n): H on each course.
+        variance : float
+            R.
+        """
+        self.matrix = np.asarray(self.matrix + slopes.T @ slopes / (len(slopes) * variance), dtype=np.float64)
+
+    def covariance(self) -> Array:
+        """Return the bound on the covariance, shape (n, n)."""
+        found: Array = np.linalg.inv(self.matrix)
+        return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Courses:
+    """True courses of flights on common times.
+
+    Attributes
+    ----------
+    t : ndarray
+        Shape (n,), s, rising.
+    airspeed, slope, static : ndarray
+        Shape (m, n): V, m/s; g·sin γ, m/s²; p, Pa.
+    force : ndarray
+        Shape (m, n): specific force along body x above that at rest, m/s².
+    temperature : float
+        Of the air, K.
+    """
+
+    t: Array
+    airspeed: Array
+    slope: Array
+    static: Array
+    force: Array
+    temperature: float
+
+    def at(self, column: Array, t: float) -> Array:
+        """Interpolate one of them to a time; shape (m,)."""
+        i = int(np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, self.t.size - 2))
+        share = (t - self.t[i]) / (self.t[i + 1] - self.t[i])
+        found: Array = column[:, i] + share * (column[:, i + 1] - column[:, i])
+        return found
+
+    def mean(self, column: Array, start: float, end: float) -> Array:
+        """Mean over a stretch, by the values at its ends and at the samples between; shape (m,)."""
+        i, j = np.searchsorted(self.t, (start, end))
+        values = np.column_stack([self.at(column, start), column[:, i:j], self.at(column, end)])
+        times = np.concatenate([[start], self.t[i:j], [end]])
+        found: Array = (0.5 * (values[:, 1:] + values[:, :-1]) @ np.diff(times)) / (end - start)
+        return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Schedule:
+    """When the filter is told what.
+
+    Attributes
+    ----------
+    start : float
+        Where the filter starts, s, at rest.
+    told : ndarray
+        Shape (r,): times of the readings of the head, s.
+    total_end, static_end : ndarray
+        Shape (r,): ends of the conversions that they carry, s.
+    """
+
+    start: float
+    told: Array
+    total_end: Array
+    static_end: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What is known at the start.
+
+    Attributes
+    ----------
+    rest_sd : float
+        Of f_x at rest, m/s².
+    tare_sd : float
+        Of the pair's difference, Pa.
+    """
+
+    rest_sd: float
+    tare_sd: float
+
+
+class AirspeedBound:
+    """The bound of one schedule over many courses.
+
+    Parameters
+    ----------
+    courses, schedule : Courses, Schedule
+        At least 50 courses make a mean that no single flight decides.
+    settings, noise : EstimatorSettings, NoiseModel
+        What is believed, which here is so.
+    start : Start
+    """
+
+    def __init__(
+        self, courses: Courses, schedule: Schedule, settings: EstimatorSettings, noise: NoiseModel, start: Start
+    ) -> None:
+        self._courses, self._schedule, self._noise, self._aided = courses, schedule, noise, settings.aided
+        gust = max(self._aided.gust_sd, self._aided.gust_floor)
+        self._gust = 2.0 * gust**2 / self._aided.gust_length
+        self._gas = GAS_CONSTANT_DRY_AIR * courses.temperature
+        self._share = 0.5 * noise.temperature_sd / courses.temperature
+        bias = self._aided.bias_sd**2
+        initial = np.diag(
+            [
+                settings.wind_sd**2,
+                bias,
+                ANYWHERE**2,
+                bias + start.rest_sd**2,
+                start.tare_sd**2,
+                max(noise.acceleration_sd, 1e-6) ** 2,
+            ]
+        )
+        initial[B, S] = initial[S, B] = -bias
+        self.information = Information(np.linalg.inv(initial))
+        self.time = schedule.start
+        self._pushed = self._scaled = 0.0  # mean force now, m/s², and what its changes add to b's variance, m²/s⁴
+
+    def sd(self) -> Array:
+        """Return the least standard deviation of the airspeed at each time told, m/s; shape (r,)."""
+        total_age = 0.5 * self._noise.total_window + self._noise.total_lag
+        static_age = 0.5 * self._noise.static_window + self._noise.static_lag
+        last_total = last_static = -np.inf
+        found = []
+        schedule = self._schedule
+        for told, total_end, static_end in zip(
+            schedule.told.tolist(), schedule.total_end.tolist(), schedule.static_end.tolist(), strict=True
+        ):
+            if total_end > last_total and total_end - total_age > self.time:
+                self._advance(total_end - total_age)
+                if static_end > last_static and static_end - static_age > schedule.start:
+                    self._static(static_end - static_age)
+                    last_static = static_end
+                self._total(total_end)
+                last_total = total_end
+            found.append(self._told(told))
+        return np.array(found)
+
+    # The information's own terms; the same as in `energy` and `aided`, on true courses.
+
+    def _model(self, start: float, end: float) -> tuple[Array, Array]:
+        """Return F, shape (m, 6, 6), and Q, shape (6, 6), from one time to the next."""
+        c, aided, noise = self._courses, self._aided, self._noise
+        dt, middle = end - start, 0.5 * (start + end)
+        speed, slope, static = (c.at(column, middle) for column in (c.airspeed, c.slope, c.static))
+        density = static / self._gas
+        force = c.mean(c.force, start, end)
+        railed = bool(np.mean(force) > aided.on_rail)
+        keep, stay = (1.0, 1.0) if railed else (1.0 - dt / aided.bias_time, 1.0 - dt / aided.slope_time)
+        f = np.zeros((len(speed), SIZE, SIZE))
+        f[:, range(SIZE), range(SIZE)] = (1.0, keep, 1.0, stay, 1.0, 1.0)
+        f[:, V, B] = f[:, V, S] = -dt
+        f[:, P, V], f[:, P, S] = -density * slope * dt, -density * speed * dt
+        share = RAIL_SHARE if railed else 1.0
+        q_slope = share * aided.slope_rate**2 * dt
+        q_bias = share * 2.0 * aided.bias_sd**2 / aided.bias_time * dt + self._scaled
+        across = float(np.mean(density * speed)) * dt
+        reach = np.array([[dt * dt / 3.0, across * dt / 3.0], [across * dt / 3.0, across**2 / 3.0]])
+        q = np.zeros((SIZE, SIZE))
+        q[V, V] = self._gust * float(np.mean(np.maximum(speed, SLOWEST))) * dt
+        q[V, V] += noise.accelerometer_sd**2 / noise.accelerometer_rate * dt + dt * dt / 3.0 * q_bias
+        q[np.ix_((V, P), (V, P))] += q_slope * reach
+        q[P, P] += aided.static_walk**2 * dt
+        q[V, B] = q[B, V] = -0.5 * dt * q_bias
+        q[V, S] = q[S, V] = -0.5 * dt * q_slope
+        q[P, S] = q[S, P] = -0.5 * across * q_slope
+        q[B, B], q[S, S] = q_bias, q_slope
+        q[D, D] = max(noise.walk, 1e-6) ** 2 * dt
+        q[K, K] = (PARAMETER_WALK * max(noise.acceleration_sd, 1e-6)) ** 2 * dt
+        return f, q
+
+    def _advance(self, to: float) -> None:
+        self.information.predict(*self._model(self.time, to))
+        self.time, self._scaled = to, 0.0
+
+    def _static(self, at: float) -> None:
+        c = self._courses
+        slopes = np.zeros((len(c.airspeed), SIZE))
+        slopes[:, P] = 1.0
+        slopes[:, S] = c.at(c.static, self.time) / self._gas * c.at(c.airspeed, self.time) * (self.time - at)
+        self.information.update(slopes, self._noise.static_sd**2)
+
+    def _total(self, end: float) -> None:
+        c, noise = self._courses, self._noise
+        speed, static = c.at(c.airspeed, self.time), c.at(c.static, self.time)
+        heat = SEVEN_R * c.temperature
+        y = 1.0 + speed**2 / heat
+        slopes = np.zeros((len(speed), SIZE))
+        slopes[:, V] = 7.0 * static / heat * speed * y**2.5
+        slopes[:, P] = y**3.5
+        slopes[:, D] = 1.0
+        window = noise.total_window or 1.0 / noise.accelerometer_rate
+        slopes[:, K] = c.mean(c.force, end - noise.total_lag - window, end - noise.total_lag)
+        pushed = float(np.mean(slopes[:, K]))
+        self._scaled = noise.accelerometer_scale_sd**2 * abs(pushed**2 - self._pushed**2)
+        self._pushed = pushed
+        self.information.update(slopes, noise.total_sd**2)
+
+    def _told(self, t: float) -> float:
+        """Least standard deviation at the time of a reading, later than the filter's own by the lag."""
+        ahead = self.information
+        if t > self.time:
+            ahead = Information(self.information.matrix)
+            ahead.predict(*self._model(self.time, t))
+        variance = float(ahead.covariance()[V, V])
+        speed = self._courses.at(self._courses.airspeed, t)
+        return float(np.sqrt(variance + self._share**2 * np.mean(speed**2)))

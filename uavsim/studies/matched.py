@@ -1,0 +1,291 @@
+"""Flights drawn from the aided filter's own model: whether the filter reaches the bound and knows its own error.
+
+Every run draws bias, wind, gust, climb, tare and noise as `onboard.airspeed.energy` believes them,
+
+    V̇ = f_x − b − s + gust,    ṗ = −ρ V s,    ḃ = −b/τ_b + noise,    ṡ = −s/τ_s + noise
+
+in steps of a millisecond, 0.3 s of 8.9 g to 24 m/s, a climb that levels off, cruise at 30 m/s. A loop on the true
+airspeed holds it near that course; its specific force is what the accelerometer reads, noise added, so that no filter
+learns more from it than the model says. Readings are those of named parts in named modes, each of the instant at the
+middle of its conversion. The filter gets them through its whole life: rest, tare, a launch recognised 40 ms late,
+replay.
+
+Here theory and filter must agree, so the figures measure the filter, not the aircraft; what the real flow adds is
+measured in flight.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_PRESSURE, STANDARD_TEMPERATURE
+from uavsim.onboard.airspeed import AidedFilter, EstimatorSettings, NoiseModel
+from uavsim.onboard.airspeed.aided import SLOWEST
+from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
+from uavsim.onboard.airspeed.rest_force import WANDER
+from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
+
+Array = NDArray[np.float64]
+
+STEP = 1e-3  # s
+REST = 2.2  # s at rest before the launch, tare included
+COVERED = (0.2, 1.2)  # s, the tare
+PEAK, RISE, STROKE = 8.9 * 9.80665, 0.025, 0.300  # m/s², s, s: a trapezoid to 24 m/s
+CRUISE, THRUST, HOLD = 30.0, 1.5, 0.5  # m/s, m/s², 1/s: after the rail, and how stiffly it is held
+REST_FORCE = 2.5  # m/s², g·sin 15°
+LATENCY = 0.040  # s after the launch at which it is recognised
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A pair of pressure sensors in a named mode: noise, Pa, conversions a second, their length, s."""
+
+    noise: float
+    rate: float
+    window: float
+
+
+MODES = {
+    "bmp390 x2": Mode(2.7, 100.0, 6.84e-3),
+    "ms5611 x4096": Mode(1.2, 110.0, 8.22e-3),  # a temperature after every tenth pressure
+    "bmp581 x4": Mode(0.41, 255.0, 2.9e-3),
+}
+"""Noise a conversion and typical conversion time by the parts' datasheets, as in the presets."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatchedSettings:
+    """An ensemble of matched flights.
+
+    Attributes
+    ----------
+    mode : Mode
+    estimator : EstimatorSettings
+        What the filter believes, and what is so.
+    duration : float
+        From the launch on, s.
+    runs, seed : int
+    acceleration_sd : float
+        Standard deviation of the pair's pressure error per specific force, Pa/(m/s²).
+    """
+
+    mode: Mode = MODES["ms5611 x4096"]
+    estimator: EstimatorSettings = field(default_factory=lambda: EstimatorSettings(kind="aided", wind_sd=1.0))
+    duration: float = 20.0
+    runs: int = 100
+    seed: int = 1
+    acceleration_sd: float = 0.06
+
+    def noise(self) -> NoiseModel:
+        """Return what the filter believes of the sensors."""
+        m = self.mode
+        return NoiseModel(
+            total_sd=m.noise,
+            static_sd=m.noise,
+            temperature_sd=0.0,
+            total_window=m.window,
+            static_window=m.window,
+            acceleration_sd=self.acceleration_sd,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """True courses and readings of an ensemble; times from switching on, the launch at `REST`.
+
+    Attributes
+    ----------
+    courses : Courses
+    schedule : Schedule
+        Of all rows; `start` is where the filter will start.
+    force_read : ndarray
+        Shape (m, n), m/s².
+    total, static : ndarray
+        Shape (m, r), Pa.
+    """
+
+    courses: Courses
+    schedule: Schedule
+    force_read: Array
+    total: Array
+    static: Array
+
+
+def draw(settings: MatchedSettings) -> Drawn:
+    """Draw an ensemble; `settings.seed` fixes every bit."""
+    generator = np.random.default_rng(settings.seed)
+    noise = settings.noise()
+    t: Array = STEP * np.arange(round((REST + settings.duration) / STEP) + 1, dtype=np.float64)
+    start = REST + LATENCY - settings.estimator.aided.replay
+    speed, slope, static, force, read = _fly(settings, noise, t, start, generator)
+    courses = Courses(t, speed, slope, static, force, STANDARD_TEMPERATURE)
+    rate, window = settings.mode.rate, settings.mode.window
+    told = np.arange(np.ceil(2 * window * rate) + 1, t[-1] * rate) / rate
+    ages = generator.uniform(0.0, 1.0 / rate, 2)  # of the conversions when polled
+    schedule = Schedule(start, told, told - ages[0], told - ages[1])
+    total_at = schedule.total_end - 0.5 * window
+    shape = (settings.runs, told.size)
+    v, p_t, p_s = (
+        _at(t, speed, total_at), _at(t, static, total_at), _at(t, static, schedule.static_end - 0.5 * window),
+    )  # fmt: skip
+    v[:, total_at <= COVERED[1]] = 0.0
+    pressed = np.column_stack([courses.mean(force, end - window, end) for end in schedule.total_end.tolist()])
+    k = settings.acceleration_sd * generator.standard_normal((settings.runs, 1))
+    walk = np.cumsum(noise.walk / sqrt(rate) * generator.standard_normal(shape), axis=1)
+    total = p_t * (1.0 + v**2 / (SEVEN_R * STANDARD_TEMPERATURE)) ** 3.5 + k * pressed + walk
+    total += 30.0 + settings.mode.noise * generator.standard_normal(shape)
+    return Drawn(courses, schedule, read, total, p_s + settings.mode.noise * generator.standard_normal(shape))
+
+
+def _at(t: Array, column: Array, times: Array) -> Array:
+    i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, t.size - 2)
+    share = (times - t[i]) / (t[i + 1] - t[i])
+    found: Array = column[:, i] + share * (column[:, i + 1] - column[:, i])
+    return found
+
+
+def _push(t: float) -> float:
+    """Specific force of the catapult, m/s²."""
+    return PEAK * min(1.0, max(0.0, min(t - REST, REST + STROKE - t) / RISE))
+
+
+def _fly(
+    settings: MatchedSettings, noise: NoiseModel, t: Array, start: float, generator: np.random.Generator
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Return airspeed, slope, static pressure, force above that at rest, and its reading; shape (m, n) each."""
+    m, aided = settings.runs, settings.estimator.aided
+    bias = aided.bias_sd * generator.standard_normal(m)
+    slope = REST_FORCE - bias
+    bias = bias + WANDER * generator.standard_normal(m)  # since the tare of the accelerometer
+    v = settings.estimator.wind_sd * generator.standard_normal(m)
+    p = np.full(m, STANDARD_PRESSURE)
+    gust = 2.0 * max(aided.gust_sd, aided.gust_floor) ** 2 / aided.gust_length * STEP
+    gas = GAS_CONSTANT_DRY_AIR * STANDARD_TEMPERATURE
+    speeds, slopes, statics, forces = (np.empty((m, t.size)) for _ in range(4))
+    reads = noise.accelerometer_sd * generator.standard_normal((m, t.size))
+    nominal = 0.0
+    for n, now in enumerate(t.tolist()):
+        push, later = _push(now), _push(now + STEP)
+        flown = now >= REST + STROKE
+        command = push if not flown else min(THRUST, CRUISE - nominal)
+        f = command + bias + slope + (HOLD * (nominal - v) if flown else 0.0)
+        speeds[:, n], slopes[:, n], statics[:, n], forces[:, n] = v, slope, p, f - REST_FORCE
+        reads[:, n] += f
+        if now < start:
+            continue
+        railed = push > aided.on_rail
+        w = generator.standard_normal((4, m))
+        change = STEP * (f - bias - slope) + 0.5 * STEP * (later - push)  # of the push the trapezoid
+        variance = gust * np.maximum(v, SLOWEST)
+        p = p - p / gas * (v + 0.5 * change) * slope * STEP + aided.static_walk * sqrt(STEP) * w[0]
+        v = v + change + np.sqrt(variance) * w[1]
+        nominal += STEP * command
+        share = RAIL_SHARE if railed else 1.0
+        wander = share * 2.0 * STEP / aided.bias_time * aided.bias_sd**2
+        wander += noise.accelerometer_scale_sd**2 * abs(later**2 - push**2)
+        bias = bias + sqrt(wander) * w[2]
+        slope = slope + sqrt(share * STEP) * aided.slope_rate * w[3]
+        if not railed:
+            bias, slope = bias - bias * STEP / aided.bias_time, slope - slope * STEP / aided.slope_time
+    return speeds, slopes, statics, forces, reads
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Matched:
+    """What the filter made of an ensemble, at the times told from the launch's recognition on.
+
+    Attributes
+    ----------
+    t : ndarray
+        Shape (r,), s after the launch.
+    error, sd : ndarray
+        Shape (m, r): airspeed less the true one, and what is claimed, m/s.
+    raw_error : ndarray
+        Shape (m, r): of the raw airspeed.
+    nis : ndarray
+        Shape (m, r): normalised innovation squared of both readings together, 2 on average.
+    bound : ndarray
+        Shape (r,): the least standard deviation that the information allows, m/s.
+    """
+
+    t: Array
+    error: Array
+    sd: Array
+    raw_error: Array
+    nis: Array
+    bound: Array
+
+    def rmse(self) -> Array:
+        """Root mean square error over the runs, shape (r,), m/s."""
+        found: Array = np.sqrt(np.mean(self.error**2, axis=0))
+        return found
+
+    def ratio(self, start: float, end: float) -> float:
+        """RMSE over the bound's root mean square, from `start` to `end`, s after the launch."""
+        part = (self.t >= start) & (self.t <= end)
+        return float(np.sqrt(np.mean(self.error[:, part] ** 2) / np.mean(self.bound[part] ** 2)))
+
+
+def run(settings: MatchedSettings, drawn: Drawn | None = None, told: Callable[[float], None] | None = None) -> Matched:
+    """Fly the filter through an ensemble.
+
+    Parameters
+    ----------
+    settings : MatchedSettings
+    drawn : Drawn, optional
+        Drawn before with the same settings.
+    told : callable, optional
+        Called with the share that is done.
+    """
+    drawn = draw(settings) if drawn is None else drawn
+    rows = []
+    for i in range(settings.runs):
+        rows.append(_run_one(settings, drawn, i))
+        if told is not None:
+            told((i + 1) / settings.runs)
+    table = np.array(rows)  # (m, r, 4)
+    s = drawn.schedule
+    kept = s.told > REST + LATENCY
+    truth = _at(drawn.courses.t, drawn.courses.airspeed, s.told[kept])
+    schedule = Schedule(
+        s.start, s.told[s.told > s.start], s.total_end[s.told > s.start], s.static_end[s.told > s.start]
+    )
+    tare = settings.mode.noise * sqrt(2.0 / max(1.0, (COVERED[1] - COVERED[0]) * settings.mode.rate))
+    noise = settings.noise()
+    rest = sqrt(noise.accelerometer_sd**2 / (0.5 * noise.accelerometer_rate) + WANDER**2)
+    bound = AirspeedBound(drawn.courses, schedule, settings.estimator, noise, Start(rest, tare)).sd()
+    return Matched(
+        t=s.told[kept] - REST,
+        error=table[:, :, 0] - truth,
+        sd=table[:, :, 1],
+        raw_error=table[:, :, 2] - truth,
+        nis=table[:, :, 3],
+        bound=bound[-int(kept.sum()) :],
+    )
+
+
+def _run_one(settings: MatchedSettings, drawn: Drawn, i: int) -> list[tuple[float, float, float, float]]:
+    """Return airspeed, its standard deviation, the raw airspeed and both NIS together, at the times told in flight."""
+    estimator = AidedFilter(settings.estimator, settings.noise(), COVERED)
+    forces = zip(drawn.courses.t.tolist(), drawn.force_read[i].tolist(), strict=True)
+    s = drawn.schedule
+    rows = zip(
+        s.told.tolist(), drawn.total[i].tolist(), drawn.static[i].tolist(), s.total_end.tolist(),
+        s.static_end.tolist(), strict=True,
+    )  # fmt: skip
+    found = []
+    t, f = next(forces)
+    launch = REST + LATENCY
+    for told, total, static, total_end, static_end in rows:
+        while t <= told:
+            estimator.accelerometer(t, f, 0.0, 0.0)
+            if t >= launch and not estimator.flying:
+                estimator.launched(t)
+            t, f = next(forces, (np.inf, 0.0))
+        estimate = estimator.step(told, total, static, STANDARD_TEMPERATURE, total_end, static_end)
+        if told > launch and estimate is not None:
+            found.append((estimate[1], estimate[2], estimate[3], estimate[7] + estimate[8]))
+    return found
