@@ -1,0 +1,281 @@
+"""A survey's folder: which places, with what error; the position error that the probe model reads; a map.
+
+`survey.json` has all figures, `survey.csv` a row a place and role, `position_error.toml` is a scenario whose static
+port has the position error of the place that is named, `position_error.csv` the same as a table over Mach number, angle
+of attack and sideslip, `map.png` the places on the aircraft's outline. Written under another name and renamed when whole.
+"""
+
+import csv
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from uavsim.flight import claim, unfinished, write_json, write_toml
+from uavsim.studies.survey import Survey, box, choose
+from uavsim.studies.survey.ranking import Rank, pair_error
+from uavsim.views.figure import BLACK, BLUE, DARK, GREY, LIGHT, RED, SMALL, dress, label, sheet
+from uavsim.views.figure import save as save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LISTED = 8  # places of each role that are printed and numbered on the map
+COLUMNS = (
+    "role", "rank", "place", "part", "kind", "x", "y", "z", "share_mean", "share_least", "share_most",
+    "rms_raw", "rms_calibrated", "rms_calibrated_angles", "rms_worst_phase", "available", "share_per_mm", "caveat",
+)  # fmt: skip
+
+
+def save(found: Survey, target: Path, *, overwrite: bool, plots: bool) -> Path:
+    """Write the folder of a survey, whole or not at all.
+
+    Parameters
+    ----------
+    found
+        The survey.
+    target
+        Made with its parents; an empty folder counts as none.
+    overwrite
+        Replace a folder that is not empty.
+    plots
+        Draw the map.
+    """
+    claim(target, overwrite=overwrite)
+    with unfinished(target) as folder:
+        write_json(folder / "survey.json", summary(found))
+        _write_rows(folder / "survey.csv", [COLUMNS, *_rows(found)])
+        write_toml(folder / "position_error.toml", position_error(found))
+        _write_rows(folder / "position_error.csv", _table(found))
+        if plots:
+            save_map(found, folder / "map.png")
+    return target
+
+
+def summary(found: Survey) -> dict[str, Any]:
+    """Return what `survey.json` holds."""
+    e = found.envelope
+    total, static = choose(found.total), choose(found.static)
+    raw, calibrated = pair_error(total.place, static.place, e)
+    return {
+        "aircraft": found.outline.name,
+        "section_speed": found.source,
+        "envelope": {
+            "flights": list(e.source), "rows": int(e.mach.size),
+            "alpha_deg": [math.degrees(v) for v in e.range("alpha")],
+            "beta_deg": [math.degrees(v) for v in e.range("beta")],
+            "mach": list(e.range("mach")), "airspeed": list(e.range("airspeed")),
+            "wing_out": float(e.weight[e.wing_out].sum()),
+        },
+        "named": {
+            "total": _rank(total), "static": _rank(static),
+            "total_hole": _rank(choose(found.total, "hole")), "static_hole": _rank(choose(found.static, "hole")),
+            "pair": {"rms_raw": raw, "rms_calibrated": calibrated},
+        },
+        "position_error": {
+            **_coefficients(found), "largest_difference": found.polynomial_error, "scenario": "position_error.toml",
+            "table": "position_error.csv",
+        },
+        "total": [_rank(each) for each in found.total],
+        "static": [_rank(each) for each in found.static],
+        "neuralfoil_minus_panels": None
+        if found.cross_check is None
+        else {f"{place:+g}": value for place, value in found.cross_check.items()},
+        "paper_case": found.paper,
+    }  # fmt: skip
+
+
+def _rank(each: Rank) -> dict[str, Any]:
+    return dict(zip(COLUMNS[2:], _cells(each), strict=True))
+
+
+def _cells(each: Rank) -> list[Any]:
+    place = each.place
+    return [
+        place.name, place.part, place.kind, *place.position, each.mean, each.least, each.most, each.raw,
+        each.constant, each.angles, each.worst_phase, each.available, each.slope, place.caveat,
+    ]  # fmt: skip
+
+
+def _rows(found: Survey) -> list[list[Any]]:
+    return [
+        [role, number, *("" if cell is None else cell for cell in _cells(each))]
+        for role, ranks in (("total", found.total), ("static", found.static))
+        for number, each in enumerate(ranks, start=1)
+    ]
+
+
+def _coefficients(found: Survey) -> dict[str, float]:
+    names = ("error", "error_alpha", "error_alpha2", "error_beta2", "error_mach2")
+    return {name: term[0] for name, term in zip(names, found.polynomial.terms, strict=True)}
+
+
+def position_error(found: Survey) -> dict[str, Any]:
+    """Return a scenario whose head has the ports that are named: what the probe model reads."""
+    static = choose(found.static)
+    return {
+        "description": f"{found.outline.name} with its static port at: {static.place.name}",
+        "air_data": {"total_port": {"probe": "plain"}, "static_port": _coefficients(found)},
+    }
+
+
+def _table(found: Survey) -> list[list[Any]]:
+    """Shares of both named places over a grid: mach, alpha, beta, total, static."""
+    total, static = choose(found.total).place, choose(found.static).place
+    alpha, beta, mach = box(found.envelope)
+    m, a, b = (grid.ravel() for grid in np.meshgrid(mach, alpha, beta, indexing="ij"))
+    columns = (m, a, b, total.share(a, b, m), static.share(a, b, m))
+    rows = [[float(f"{value:.9g}") for value in row] for row in zip(*columns, strict=True)]
+    return [["mach", "alpha", "beta", "total_share", "static_share"], *rows]
+
+
+def _write_rows(path: Path, rows: Any) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
+
+
+# -- what is printed
+
+
+def lines(found: Survey) -> list[str]:
+    """Return what the command prints: the named places and the best of each role."""
+    e = found.envelope
+    slow, fast = e.range("mach")
+    alpha, beta = ([math.degrees(v) for v in e.range(name)] for name in ("alpha", "beta"))
+    speed = (
+        "NeuralFoil" if found.source == "neuralfoil" else "our vortex panels (NeuralFoil is not installed or not asked)"
+    )
+    said = [
+        f"{found.outline.name}: {len(found.places)} places over {', '.join(e.source)}: alpha {alpha[0]:.1f} to "
+        f"{alpha[1]:.1f}, beta {beta[0]:.1f} to {beta[1]:.1f} deg, Mach {slow:.3f} to {fast:.3f}",
+        f"speed along wing sections: {speed}",
+        "",
+        f"{'total pressure':<42}{'m/s rms raw':>12}{'calibrated':>12}{'in stream':>11}",
+        *(_line(each) for each in found.total[:LISTED]),
+        "",
+        f"{'static pressure':<42}{'m/s rms raw':>12}{'calibrated':>12}{'in stream':>11}",
+        *(_line(each) for each in found.static[:LISTED]),
+        "",
+    ]
+    for role, ranks in (("total", found.total), ("static", found.static)):
+        best, hole = choose(ranks), choose(ranks, "hole")
+        also = "" if best is hole else f"; flush with the surface: {hole.place.name}, {_figures(hole)}"
+        said.append(f"{role} port: {best.place.name}, {_figures(best)}{also}")
+    raw, calibrated = pair_error(choose(found.total).place, choose(found.static).place, e)
+    said.append(f"both together: {raw:.2f} m/s rms, calibrated once {calibrated:.2f}")
+    return [*said, "", "published case, Mach 0.6, alpha 1 deg:", *(f"  {note}" for note in found.paper["notes"])]
+
+
+def _figures(each: Rank) -> str:
+    return f"{each.raw:.2f} m/s rms, calibrated once {each.constant:.2f}"
+
+
+def _line(each: Rank) -> str:
+    mark = "" if not each.place.caveat else f"  ({each.place.caveat})"
+    return f"{each.place.name:<42}{each.raw:>12.3f}{each.constant:>12.3f}{100 * each.available:>10.0f}%{mark}"
+
+
+# -- the map
+
+
+def save_map(found: Survey, path: Path) -> None:
+    """Draw the places on the aircraft's outline from above and from the side, coloured by their airspeed error."""
+    from matplotlib.colors import LogNorm
+
+    e = found.envelope
+    title = f"Where to mount the head: {found.outline.name}"
+    subtitle = (
+        "Airspeed error, m/s rms, calibrated once, over "
+        f"{', '.join(e.source)}.  Triangles: total, circles: static; hollow: not in the stream all the time, or "
+        "another reason against it"
+    )
+    figure, grid = sheet(title, subtitle, (2.75, 1.0), size=(11.9, 10.6), right=0.8, share=False, gap=(0.16, 0.1))
+    norm, shown = LogNorm(0.01, 5.0), None
+    for axes, side in ((grid[0][0], False), (grid[1][0], True)):
+        _outline(axes, found, side=side)
+        for ranks, marker, size in ((found.static, "o", 26.0), (found.total, "^", 52.0)):
+            shown = _dots(axes, ranks, marker, size, norm, side=side)
+        for role, ranks, colour in (("total", found.total, RED), ("static", found.static, BLUE)):
+            _point_out(axes, choose(ranks), role, colour, side=side)
+        axes.set_aspect("equal")
+        dress(axes)
+        axes.margins(0.04)
+        if not side:
+            axes.set_ylim(-0.35 * found.outline.wing.tip, 1.05 * found.outline.wing.tip)
+        label(axes, "z, up, m" if side else "y, right, m", "x, aft of the nose, m")
+    assert shown is not None
+    bar = figure.colorbar(shown, ax=[row[0] for row in grid], fraction=0.03, pad=0.02)
+    bar.set_label("m/s rms, calibrated once", fontsize=SMALL)
+    bar.ax.tick_params(labelsize=SMALL)
+    save_figure(figure, path)
+
+
+def _dots(axes: "Axes", ranks: list[Rank], marker: str, size: float, norm: Any, *, side: bool) -> Any:
+    """Draw the places of a role, the worst first, so that the best is on top."""
+    shown = None
+    for sound in (False, True):
+        drawn = [each for each in reversed(ranks) if each.sound is sound]
+        x = [each.place.position[0] for each in drawn]
+        y = [each.place.position[2 if side else 1] for each in drawn]
+        errors = [max(each.constant, 1e-4) for each in drawn]
+        if sound:
+            shown = axes.scatter(
+                x,
+                y,
+                c=errors,
+                norm=norm,
+                cmap="viridis_r",
+                marker=marker,
+                s=size,
+                edgecolors=BLACK,
+                linewidths=0.5,
+                zorder=5,
+            )
+        else:
+            hollow = axes.scatter(x, y, marker=marker, s=0.7 * size, facecolors="white", linewidths=1.2, zorder=4)
+            from matplotlib import colormaps
+
+            hollow.set_edgecolor(colormaps["viridis_r"](norm(np.array(errors))))
+    return shown
+
+
+def _point_out(axes: "Axes", each: Rank, role: str, colour: str, *, side: bool) -> None:
+    """Name a place that is chosen."""
+    at = each.place.position[0], each.place.position[2 if side else 1]
+    up = 48.0 if role == "total" else 20.0 if side else -48.0
+    axes.annotate(
+        f"{role}: {each.place.name}", at, xytext=(10.0, up), textcoords="offset points",
+        fontsize=SMALL, color=colour, arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8}, zorder=6,
+    )  # fmt: skip
+
+
+def _outline(axes: "Axes", found: Survey, *, side: bool) -> None:
+    """Draw the aircraft from above or from its right."""
+    o = found.outline
+    x = np.linspace(o.stations[0], o.stations[-1], 200)
+    r = np.array([o.radius(float(each)) for each in x])
+    axes.fill_between(x, -r, r, facecolor=LIGHT, edgecolor=GREY, linewidth=0.8, zorder=1)
+    if side:
+        if o.fin is not None:
+            _panel(axes, o.fin, 1.0)
+        for surface in (o.wing, o.tail):
+            if surface is not None:
+                ends = (
+                    surface.leading_edge(surface.root),
+                    surface.leading_edge(surface.root) + surface.chord(surface.root),
+                )
+                axes.plot(ends, (surface.z, surface.z), color=DARK, linewidth=1.5, zorder=2)
+        return
+    for surface in (o.wing, o.tail):
+        if surface is not None:
+            for sign in (1.0, -1.0):
+                _panel(axes, surface, sign)
+
+
+def _panel(axes: "Axes", surface: Any, sign: float) -> None:
+    corners = [
+        (surface.leading_edge(y) + share * surface.chord(y), sign * y)
+        for y, share in ((surface.root, 0.0), (surface.tip, 0.0), (surface.tip, 1.0), (surface.root, 1.0))
+    ]
+    axes.fill(*zip(*corners, strict=True), facecolor="#eeeeee", edgecolor=GREY, linewidth=0.8, zorder=1)
