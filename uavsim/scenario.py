@@ -411,7 +411,8 @@ def _check_detector(s: Scenario) -> None:
         )
     if kind != "multi-level-window" and (s.detector.axes == "any" or len(s.detector.axes) != 1):
         raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind}'", "detector.axes")
-    key, level, long, time = need(s.detector)
+    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
+    key, level, long, time = need(s.detector, push)
     if key == "trigger" and level < s.detector.threshold:
         raise SettingError(
             f"detector.trigger = {level:g}: must be at least the threshold, {s.detector.threshold:g} m/s²",
@@ -425,15 +426,13 @@ def _check_detector(s: Scenario) -> None:
     scale = min(3.0 * part.scale_sd, part.scale_limit)
     reach = part.range * (1.0 - scale) - bias - STANDARD_GRAVITY
     if level >= reach:
-        shown = f"{kind}, " if key == "kind" else ""
         raise SettingError(
-            f"detector.{key} = {shown}{level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; "
+            f"detector.{key} = {level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; "
             f"less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
             f"{reach:.1f} m/s²",
             f"detector.{key}",
             "accelerometer",
         )
-    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
     shortest = math.sqrt(2.0 * s.launcher.stroke / push)  # all of the push from the start, nothing against it
     if time >= shortest:
         raise SettingError(

@@ -14,13 +14,13 @@ Sums are kept in whole steps of 2⁻²⁰ m/s², so that adding and taking off l
 
 from math import isfinite, sqrt
 
-from uavsim.onboard.launch.axis import GRAVITY, OneAxis, whole
+from uavsim.onboard.launch.axis import GRAVITY, Counting, whole
 from uavsim.onboard.launch.detector import Axis, require
 
 SCALE = 2.0**20  # steps in 1 m/s²
 
 
-class GlrBank(OneAxis):
+class GlrBank(Counting):
     """Recognise a launch by the likelihood ratio of the best of some windows.
 
     Parameters
@@ -52,7 +52,8 @@ class GlrBank(OneAxis):
 
     Notes
     -----
-    Before the first sample, after a gap and where the force is NaN, samples count as ones that take off `fall`.
+    Before the first sample and before the end of a gap, and where the force is NaN, samples count as ones that take off
+    `fall`. A sample that follows lost ones counts for them too.
 
     Examples
     --------
@@ -91,9 +92,7 @@ class GlrBank(OneAxis):
         self._quiet = self._longest_window  # samples since the last that took off less than `fall`
         self.triggered = False
 
-    def _take(self, f: float, dt: float, late: bool) -> bool:
-        if late and self.triggered:
-            self._clear()
+    def _count(self, f: float) -> bool:
         above = f - self._reference + self._fall
         if not above > 0.0:  # NaN too
             if not self.triggered:
