@@ -21,8 +21,9 @@ from sensors import Streams, Vibration
 from uavsim import cosim
 from uavsim.cosim import CHUNK, Cosimulation, Onboard, draw, plant_settings, replay
 from uavsim.flight import UNITS, Flight
-from uavsim.plants import columns, jsbsim
+from uavsim.plants import columns
 from uavsim.plants.jsbsim import JsbsimPlant
+from uavsim.plants.plant import Commands
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.truth import FELT, STANDARD_GRAVITY
 
@@ -399,7 +400,7 @@ class Taped(JsbsimPlant):
         super().__init__(plant_settings(scenario, draw(scenario)))
         self.tape: list[tuple[float, tuple[float, ...]]] = []
 
-    def command(self, commands: jsbsim.Commands) -> None:
+    def command(self, commands: Commands) -> None:
         self.tape.append((self.t, commands))
         super().command(commands)
 
@@ -585,7 +586,7 @@ def test_a_knock_just_before_release_costs_the_launch(catapult: Flight) -> None:
 class Deaf(JsbsimPlant):
     """Obeys no command: wings folded, no motor."""
 
-    def command(self, commands: jsbsim.Commands) -> None:
+    def command(self, commands: Commands) -> None:
         pass
 
 

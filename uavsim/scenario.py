@@ -29,13 +29,14 @@ from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSetti
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.onboard.launch.settings import USES, need, unread
 from uavsim.plants.hangar import find_aircraft, hangar
+from uavsim.plants.rig_settings import PlantSettings, length
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.score import Judged, score
 from uavsim.settings import SettingError
 
 Part = TypeVar("Part", AccelerometerSettings, PressureSettings)
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
-Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout"]
+Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout", "completed"]
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
@@ -103,6 +104,7 @@ class Scenario:
     duration: Annotated[float, Interval(ge=1, le=3600)] = 35.0
     seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 1
     expect: Outcome = "cruise"
+    plant: PlantSettings = field(default_factory=PlantSettings)
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)
     environment: EnvironmentSettings = field(default_factory=EnvironmentSettings)
     launcher: LauncherSettings = field(default_factory=LauncherSettings)
@@ -326,6 +328,15 @@ def _check_times(s: Scenario) -> None:
             f"launcher.wait_max = {launcher.wait_max:g}: must be at least wait_min = {launcher.wait_min:g} s",
             "launcher.wait_max",
             "launcher.wait_min",
+        )
+    run = length(s.plant)
+    if run and s.duration < launcher.wait_max + run:
+        raise SettingError(
+            f"duration = {s.duration:g}: must hold the longest wait, launcher.wait_max = {launcher.wait_max:g} s, and "
+            f"the run of plant.kind = {s.plant.kind!r}, {run:g} s",
+            "duration",
+            "launcher.wait_max",
+            "plant",
         )
     if s.duration <= launcher.wait_max:
         raise SettingError(
