@@ -21,6 +21,7 @@ import tomli_w
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import uavsim
 from sensors import presets
 from uavsim.flight import Flight, write_toml
 from uavsim.plants.hangar import hangar
@@ -222,10 +223,18 @@ def test_the_line_blames_whoever_gave_the_key(tmp_path: Path) -> None:
     assert complaint(file=file, sets="air_data.cover_off=0.6").startswith("--set: ")
     file.write_text("[launcher]\nwait_min = 2.5\n[air_data]\ntare_duration = 2.1\n")
     assert complaint(file=file, sets="seed=2").startswith(f"{file}: air_data.tare_duration")
-    with pytest.raises(ValueError, match=r"^--seed: seed = -1"):
+    with pytest.raises(ValueError, match=r"^seed: seed = -1: must be a whole number from 0"):
         load_scenario("catapult", seed=-1)
+    with pytest.raises(ValueError, match=r"^--seed: seed = -1: must be"):
+        load_scenario("catapult", seed=-1, seed_name="--seed")
     with pytest.raises(ValueError, match=r"^scenario: seed = -1"):
         Scenario().with_seed(-1)
+
+
+def test_a_wrong_seed_given_in_python_names_no_option() -> None:
+    with pytest.raises(ValueError, match=r"^seed: seed = -1: must be a whole number from 0") as error:
+        uavsim.fly(seed=-1)
+    assert "--" not in str(error.value)
 
 
 # -- what is right ---------------------------------------------------------------------------------------------------

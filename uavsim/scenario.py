@@ -151,7 +151,9 @@ def packaged_names() -> list[str]:
     return sorted(file.stem for file in PACKAGED.glob("*.toml"))
 
 
-def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: int | None = None) -> Scenario:
+def load_scenario(
+    source: str | Path, *, overrides: Iterable[str] = (), seed: int | None = None, seed_name: str = "seed"
+) -> Scenario:
     """Read a scenario.
 
     Parameters
@@ -162,11 +164,13 @@ def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: in
         ``KEY=VALUE`` each, with the key joined by dots and the value as TOML has it (quotes may be left out).
     seed
         Instead of the scenario's own.
+    seed_name
+        What the seed is called where the user gave it, for the error.
 
     Raises
     ------
     ValueError
-        One line that names the file or ``--set``, the key and what is allowed.
+        One line that names the file, ``--set`` or the seed's name, the key and what is allowed.
     """
     path = _find(source)
     where = path.stem if path.parent == PACKAGED else str(path)
@@ -177,7 +181,7 @@ def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: in
         for override in overrides:
             origins[_apply(values, override)] = "--set"
         if seed is not None:
-            values["seed"], origins["seed"] = seed, "--seed"
+            values["seed"], origins["seed"] = seed, seed_name
         scenario = _checked(values)
         _check_requirements(scenario)
     except SettingError as error:

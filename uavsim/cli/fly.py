@@ -53,7 +53,8 @@ def fly(
         raise typer.BadParameter("give --seed or --seeds, not both")
     numbers = [] if seeds is None else seeds_of(seeds)
     with user_input():
-        loaded = load_scenario(scenario, overrides=settings or (), seed=numbers[0] if numbers else seed)
+        first = numbers[0] if numbers else seed
+        loaded = load_scenario(scenario, overrides=settings or (), seed=first, seed_name="--seed")
 
     def place() -> Path:
         return folder(out, f"{loaded.name}-{named(numbers) or loaded.seed}", overwrite=overwrite)
