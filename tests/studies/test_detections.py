@@ -61,6 +61,10 @@ def variants(kind: Kind) -> list[DetectorSettings]:
         ]
     if kind == "cusum":
         return [plain] + [replace(plain, cusum=replace(plain.cusum, limit=h), axes=("-x",)) for h in (0.03, 0.5)]
+    if kind == "adaptive-cusum":
+        quick = replace(plain.adaptive, limit=0.02, highest=0.1, memory=0.002, mean=0.0005)
+        fixed = replace(plain.adaptive, limit=0.05, highest=0.05, gain=1.0, reference=20.0)
+        return [plain, replace(plain, adaptive=quick, axes=("-y",)), replace(plain, adaptive=fixed)]
     if kind == "glr-bank":
         short = replace(plain.glr, windows=(0.003, 0.020), limit=0.4)
         return [plain, replace(plain, glr=short, axes=("+z",)), replace(plain, glr=replace(plain.glr, reference=20.0))]
@@ -138,6 +142,7 @@ def test_any_settings_agree(
         sequence=min(window, 0.003),
     )
     chosen = replace(chosen, cusum=replace(chosen.cusum, reference=threshold, limit=10.0 * window, rise=5.0 + over))
+    chosen = replace(chosen, adaptive=replace(chosen.adaptive, reference=threshold, limit=window, highest=2.0 * window))
     force = rough(rate, 1500, seed)
     assert BatchDetector(chosen, rate).alarms(force).tolist() == by_step(chosen, rate, force)
 
@@ -154,7 +159,8 @@ def test_the_one_axis_may_come_alone() -> None:
     ("axes", "columns"), [(("+x",), (0,)), (("-z", "+y"), (1, 2)), ("any", (0, 1, 2)), (("+x", "-x"), (0,))]
 )
 def test_columns_are_those_of_the_axes(axes: object, columns: tuple[int, ...]) -> None:
-    assert BatchDetector(DetectorSettings(axes=axes), 1000.0).columns == columns  # type: ignore[arg-type]
+    chosen = DetectorSettings(kind="multi-level-window", axes=axes)  # type: ignore[arg-type]
+    assert BatchDetector(chosen, 1000.0).columns == columns
 
 
 @pytest.mark.parametrize("shape", [(5, 2), (5, 3, 1)])

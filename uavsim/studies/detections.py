@@ -9,8 +9,9 @@ A new kind of detector needs three things: a kernel, an entry in `MAKERS` that h
 the tests hold every kind that `uavsim.onboard.launch` has against its own `step`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from itertools import repeat
 from math import nan
 from typing import Any, cast
 
@@ -18,6 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.onboard.launch import (
+    AdaptiveCusum,
+    AdaptiveCusum,
     AltOs,
     ArduPilot,
     Cusum,
@@ -112,29 +115,30 @@ class BatchDetector:
         ValueError
             If the shape is another, or the detector needs more axes.
         """
-        return self._take(force, len(force))
+        return self._take(force, len(force), self.rate)
 
-    def first(self, trials: Forces) -> Indices:
+    def first(self, trials: Iterable[Forces], rates: Iterable[float] | None = None) -> Indices:
         """Number of the sample of the first alarm in each of some records, -1 where there is none.
 
         Parameters
         ----------
-        trials : ndarray
-            Shape (trials, n, 3) or (trials, n), m/s²; each begins at t = 0 with the detector as new.
+        trials : iterable of ndarray
+            Shape (n, 3) or (n,) each, m/s²; each begins at t = 0 with the detector as new.
+        rates : iterable of float, optional
+            Samples a second that the clock of each sensor really gave, Hz; the detector is built for its nominal rate.
         """
-        found = np.full(len(trials), -1, np.int64)
-        for row, force in enumerate(trials):
+        found = []
+        for force, rate in zip(trials, repeat(self.rate) if rates is None else rates, strict=False):
             self.reset()
-            alarm = self._take(force, 1)
-            if alarm.size:
-                found[row] = alarm[0]
+            alarm = self._take(force, 1, float(rate))
+            found.append(int(alarm[0]) if alarm.size else -1)
         self.reset()
-        return found
+        return np.array(found, np.int64)
 
-    def _take(self, force: Forces, most: int) -> Indices:
+    def _take(self, force: Forces, most: int, rate: float) -> Indices:
         out = np.empty(max(1, most), np.int64)
         p = self._parts
-        count = self._kernel(self._read(force), self._k, self.rate, p.p, p.q, self._x, self._y, out)
+        count = self._kernel(self._read(force), self._k, rate, p.p, p.q, self._x, self._y, out)
         self._k += len(force)
         return out[:count]
 
@@ -146,7 +150,9 @@ class BatchDetector:
             rows = [_row(force, name) for name in self._rows]
         else:
             raise ValueError(f"force must have the shape (n, 3), or (n,) where one axis is read, not {force.shape}")
-        return np.ascontiguousarray(rows[0]) if len(rows) == 1 else cast(Forces, np.stack(rows))
+        if len(rows) == 1:
+            return cast(Forces, np.ascontiguousarray(rows[0]))
+        return cast(Forces, np.stack(rows))
 
 
 def _row(force: Forces, name: str) -> Forces:
@@ -188,6 +194,17 @@ def _hold(d: Any) -> Parts:
 
 def _cusum(d: Any) -> Parts:
     return Parts("cusum", (d._reference, d._rise, d._fall, d._limit, d._period))
+
+
+def _adaptive_cusum(d: Any) -> Parts:
+    p = d._reference, d._rise, d._fall, d._least, d._highest, d._gain, d._most, d._follow, d._forget, d._period
+    return Parts("adaptive_cusum", p, x=(0.0, 0.5 * d._most, nan))
+
+
+def _adaptive_cusum(d: Any) -> Parts:
+    levels = d._reference, d._rise, d._fall, d._least, d._highest
+    p = *levels, d._gain, d._most, d._follow, d._forget, d._period
+    return Parts("adaptive_cusum", p, x=(0.0, d.roughness, nan))
 
 
 def _glr(d: Any) -> Parts:
@@ -235,7 +252,9 @@ MAKERS: dict[type[Detector], Callable[[Any], Parts]] = {
     SequenceWindow: _sequence,
     SingleThreshold: _hold,
     DoubleThreshold: _hold,
+    AdaptiveCusum: _adaptive_cusum,
     Cusum: _cusum,
+    AdaptiveCusum: _adaptive_cusum,
     GlrBank: _glr,
     Px4: _px4,
     Px4Norm: _px4_norm,
