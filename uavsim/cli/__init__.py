@@ -9,11 +9,12 @@ import typer
 from uavsim.cli.bench import bench
 from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, WrongInputError
 from uavsim.cli.fly import fly
+from uavsim.cli.paper import paper
 from uavsim.cli.replay import replay
 from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
 
-COMMANDS = (scenarios, fly, replay, sensors, bench)
+COMMANDS = (scenarios, fly, replay, sensors, bench, paper)
 """In the order of the help."""
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -41,6 +42,7 @@ def uavsim(
       uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
       uavsim sensors bmp390
       uavsim bench
+      uavsim paper
     """  # noqa: D301 (click reads \b: keep these lines)
     if version:
         from uavsim import __version__
