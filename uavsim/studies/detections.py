@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 
 from uavsim.onboard.launch import (
     AdaptiveCusum,
-    AdaptiveCusum,
     AltOs,
     ArduPilot,
     Cusum,
@@ -198,13 +197,7 @@ def _cusum(d: Any) -> Parts:
 
 def _adaptive_cusum(d: Any) -> Parts:
     p = d._reference, d._rise, d._fall, d._least, d._highest, d._gain, d._most, d._follow, d._forget, d._period
-    return Parts("adaptive_cusum", p, x=(0.0, 0.5 * d._most, nan))
-
-
-def _adaptive_cusum(d: Any) -> Parts:
-    levels = d._reference, d._rise, d._fall, d._least, d._highest
-    p = *levels, d._gain, d._most, d._follow, d._forget, d._period
-    return Parts("adaptive_cusum", p, x=(0.0, d.roughness, nan))
+    return Parts("adaptive_cusum", p, x=(0.0, 0.5 * d._most, 0.0))
 
 
 def _glr(d: Any) -> Parts:
@@ -254,7 +247,6 @@ MAKERS: dict[type[Detector], Callable[[Any], Parts]] = {
     DoubleThreshold: _hold,
     AdaptiveCusum: _adaptive_cusum,
     Cusum: _cusum,
-    AdaptiveCusum: _adaptive_cusum,
     GlrBank: _glr,
     Px4: _px4,
     Px4Norm: _px4_norm,

@@ -20,7 +20,6 @@ y[0] is the k of the first sample since the detector began. To add a detector: a
 """
 
 from collections.abc import Callable
-from math import isfinite, isnan
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -245,8 +244,6 @@ def adaptive_cusum(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Re
             size = abs(away)  # without a branch that noise would make unpredictable
         elif away > 0.0 or away < 0.0:
             mean += (most if away > 0.0 else -most) * min(1.0, weight)
-        elif isnan(mean) and isfinite(v):
-            mean = v
         rough += (size - rough) * (dt * forget)
         excess: float = v - reference
         if total == 0.0 and not excess > 0.0:
@@ -259,48 +256,8 @@ def adaptive_cusum(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Re
         if not total > 0.0:
             total = 0.0
         elif total > least and total > min(max(gain * rough, least), highest):
-            total, rough, mean, first = 0.0, 0.5 * most, np.nan, k0 + i + 1
+            total, rough, mean, first = 0.0, 0.5 * most, 0.0, k0 + i + 1
             out[alarms] = k0 + i
-            alarms += 1
-            if alarms == out.size:
-                break
-    x[0], x[1], x[2], y[0] = total, rough, mean, first
-    return alarms
-
-
-@compiled
-def adaptive_cusum(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
-    """`AdaptiveCusum`: p as taken below; x the sum, never below 0, the roughness and the short mean (NaN: none yet)."""
-    reference, rise, fall, least, highest, gain, most, follow, forget, period = p
-    total, rough, mean, first, alarms = x[0], x[1], x[2], y[0], 0
-    before = (k0 - 1) / rate
-    for i in range(f.size):
-        v, k = np.float64(f[i]), k0 + i
-        now = k / rate
-        dt = now - before if k != first else period
-        before = now
-        away, weight, size = v - mean, dt * follow, most
-        if -most <= away <= most:
-            mean += away * weight if weight < 1.0 else away
-            size = abs(away)
-        elif away > 0.0 or away < 0.0:
-            mean += (most if away > 0.0 else -most) * min(1.0, weight)
-        elif np.isnan(mean) and np.isfinite(v):
-            mean = v
-        rough += (size - rough) * (dt * forget)
-        excess = v - reference
-        if total == 0.0 and not excess > 0.0:
-            continue
-        if excess > rise:
-            excess = rise
-        elif not excess > fall:  # NaN too
-            excess = fall
-        total += excess * dt
-        if not total > 0.0:
-            total = 0.0
-        elif total > least and total > min(gain * rough, highest):
-            total, rough, mean, first = 0.0, 0.5 * most, nan, k + 1
-            out[alarms] = k
             alarms += 1
             if alarms == out.size:
                 break

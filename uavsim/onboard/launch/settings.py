@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from annotated_types import Gt, Interval, MinLen
 
+from uavsim.onboard.launch.adaptive_cusum import AdaptiveCusum
 from uavsim.onboard.launch.axis import GRAVITY
 from uavsim.onboard.launch.cusum import Cusum
 from uavsim.onboard.launch.detector import Axis, Detector, require
@@ -40,6 +41,40 @@ class CusumSettings:
     limit: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.1373
     rise: Level = 9.80665
     fall: Level = 19.6133
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptiveCusumSettings:
+    """Clipped cumulative sum whose limit follows the roughness, `kind = "adaptive-cusum"`.
+
+    Attributes
+    ----------
+    reference : float
+        c, m/s². 44.13 is 4.5 g.
+    rise : float
+        Most that a sample adds, m/s².
+    fall : float
+        Most that a sample takes off, m/s².
+    limit : float
+        Least limit, m/s; over the rise it is the time that a launch takes. 0.08826 is 9 g·ms.
+    highest : float
+        Highest limit, m/s, not below the least. 0.1569 is 16 g·ms.
+    gain : float
+        Limit over roughness, s.
+    mean : float
+        Time constant of the short mean, s.
+    memory : float
+        Time constant of the roughness, s; at least three periods of the accelerometer are taken.
+    """
+
+    reference: Level = 44.13
+    rise: Level = 9.80665
+    fall: Level = 14.71
+    limit: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.08826
+    highest: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.1569
+    gain: Time = 0.015
+    mean: Time = 0.002
+    memory: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +197,7 @@ Kind = Literal[
     "single-threshold",
     "double-threshold",
     "cusum",
+    "adaptive-cusum",
     "glr-bank",
     "px4",
     "px4-norm",
@@ -180,6 +216,7 @@ USES: dict[Kind, tuple[str, ...]] = {
     "single-threshold": ("threshold", "window"),
     "double-threshold": ("threshold", "trigger", "window"),
     "cusum": ("cusum",),
+    "adaptive-cusum": ("adaptive",),
     "glr-bank": ("glr",),
     "px4": ("px4",),
     "px4-norm": ("px4",),
@@ -199,6 +236,7 @@ ONE_AXIS: dict[Kind, Callable[..., Detector]] = {
     "single-threshold": SingleThreshold,
     "double-threshold": DoubleThreshold,
     "cusum": Cusum,
+    "adaptive-cusum": AdaptiveCusum,
     "glr-bank": GlrBank,
     "px4": Px4,
     "px4-norm": Px4Norm,
@@ -216,8 +254,9 @@ class DetectorSettings:
     Attributes
     ----------
     kind : str
-        "multi-level-window" is the published method; the windows, the thresholds to be held and "cusum" are its rivals;
-        "px4" to "altos" fly the rules of those autopilots, whose defaults their groups have.
+        "adaptive-cusum" is the best there is here, "multi-level-window" the published method; the windows and the
+        thresholds to be held are its rivals; "px4" to "altos" fly the rules of those autopilots, whose defaults their
+        groups have.
     threshold : float
         G2, m/s². 45.11 is 4.6 g: above a centrifuge run at 4.1 g with its noise, below the weakest launch of 5 g.
     trigger : float, optional
@@ -236,7 +275,7 @@ class DetectorSettings:
         Time for which samples in a row must be above G1 to open a "sequence-window", s.
     """
 
-    kind: Kind = "multi-level-window"
+    kind: Kind = "adaptive-cusum"
     threshold: Level = 45.11
     trigger: Level | None = None
     window: Time = 0.018
@@ -246,6 +285,7 @@ class DetectorSettings:
     rearm: bool = True
     sequence: Time = 0.003
     cusum: CusumSettings = field(default_factory=CusumSettings)
+    adaptive: AdaptiveCusumSettings = field(default_factory=AdaptiveCusumSettings)
     glr: GlrSettings = field(default_factory=GlrSettings)
     px4: Px4Settings = field(default_factory=Px4Settings)
     ardupilot: ArduPilotSettings = field(default_factory=ArduPilotSettings)
@@ -285,6 +325,9 @@ def need(settings: DetectorSettings, push: float) -> tuple[str, float, str, floa
         return f"{group}.acceleration", level, f"{group}.{long}", time
     if settings.kind == "cusum":
         return "cusum.reference", settings.cusum.reference, "cusum.limit", settings.cusum.limit / settings.cusum.rise
+    if settings.kind == "adaptive-cusum":
+        own = settings.adaptive
+        return "adaptive.reference", own.reference, "adaptive.limit", own.limit / own.rise
     if settings.kind == "glr-bank":
         return "glr.reference", settings.glr.reference, "glr.windows", min(settings.glr.windows)
     trigger = None if "trigger" not in USES[settings.kind] else settings.trigger
@@ -360,8 +403,9 @@ def default(rate: float = 1000.0) -> Detector:
     Examples
     --------
     >>> detector = default()
-    >>> steps = [detector.step(0.001 * k, 60.0, 0.0, -9.8) for k in range(20)]
-    >>> steps.index(True)  # the eighteenth sample ends the first window
-    17
+    >>> rest, push = (3.0, 0.0, -9.8), (60.0, 0.0, -9.8)
+    >>> steps = [detector.step(0.001 * k, *(rest if k < 500 else push)) for k in range(520)]
+    >>> steps.index(True) - 500  # ms; nine samples only reach the limit
+    9
     """
     return build(DetectorSettings(), rate)
