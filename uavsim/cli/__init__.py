@@ -11,10 +11,11 @@ from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, WrongInputError
 from uavsim.cli.fly import fly
 from uavsim.cli.paper import paper
 from uavsim.cli.replay import replay
+from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
 
-COMMANDS = (scenarios, fly, replay, sensors, bench, paper)
+COMMANDS = (scenarios, fly, replay, sensors, bench, paper, roc)
 """In the order of the help."""
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)

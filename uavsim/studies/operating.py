@@ -7,6 +7,7 @@ Poisson (Garwood) bands, 95 % each at every point on its own. What counts as a d
 """
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast, get_args
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from uavsim.onboard.launch import DetectorSettings, Kind
 from uavsim.onboard.launch.settings import FIELD, USES
-from uavsim.settings import read
+from uavsim.settings import SettingError, read
 from uavsim.studies.false_alarms import DISTURBANCES, FalseAlarms, count
 from uavsim.studies.intervals import share_interval
 from uavsim.studies.signals import LaunchSettings
@@ -110,6 +111,13 @@ def factors(kind: Kind) -> tuple[float, ...]:
     return THRESHOLDS if level_key(kind) == "threshold" else LIMITS
 
 
+def levels(settings: DetectorSettings) -> Iterator[tuple[float, DetectorSettings]]:
+    """The levels that are tried, over the one that is set, and the detectors; those out of bounds are left out."""
+    for factor in factors(settings.kind):
+        with suppress(SettingError):
+            yield factor, at_level(settings, level(settings) * factor) if factor != 1.0 else settings
+
+
 # -- sweeps ----------------------------------------------------------------------------------------------------------
 
 
@@ -179,7 +187,7 @@ def operate(
 
     if trials < 1 or not 0.0 < hours < np.inf:
         raise ValueError(f"needs at least one trial and hours above 0, not {trials} and {hours:g}")
-    swept = [(d, factor, at_level(d, level(d) * factor)) for d in detectors for factor in factors(d.kind)]
+    swept = [(d, factor, chosen) for d in detectors for factor, chosen in levels(d)]
     settings = [chosen for _, _, chosen in swept]
     report = progress or (lambda _: None)
     times = {kind: share * hours for kind, share in SHARES.items()}
