@@ -191,7 +191,7 @@ def test_gap_abandons_the_window():
 def test_two_missing_samples_cost_no_time_and_three_are_a_gap(start):
     """Three nominal periods at 1 kHz, whatever the rounding of k/rate: 18 ms are full with the sample at 18 ms."""
     times = [start + k / 1000.0 for k in range(19) if k % 3 == 0]
-    detector = launch.default()
+    detector = launch.build(DetectorSettings(kind="multi-level-window"), 1000.0)
     assert [k for k, t in enumerate(times) if detector.step(t, 60.0, 0.0, 0.0)] == [6]
     detector.reset()
     assert [k for k, t in enumerate(times[:5]) if detector.step(t, 60.0, 0.0, 0.0)] == []
@@ -314,17 +314,17 @@ def test_settings_out_of_bounds_are_refused(changes):
 
 
 @pytest.mark.parametrize(("rate", "samples"), [(1000.0, 18), (3200.0, 58), (104.0, 2), (50.0, 1), (20.0, 1)])
-def test_default_keeps_its_window_in_time(rate, samples):
-    detector = launch.default(rate)
-    assert recognised(detector, [46.0] * 100, period=1.0 / rate) == [samples - 1]
-    assert recognised(launch.default(rate), [45.1] * 100, period=1.0 / rate) == []
+def test_multi_level_window_keeps_its_window_in_time(rate, samples):
+    chosen = DetectorSettings(kind="multi-level-window")
+    assert recognised(launch.build(chosen, rate), [46.0] * 100, period=1.0 / rate) == [samples - 1]
+    assert recognised(launch.build(chosen, rate), [45.1] * 100, period=1.0 / rate) == []
 
 
 def test_default_at_the_centrifuge():
     """The published centrifuge: 4.1 g must not be recognised, 15.15 g must; 60 s without noise."""
     g = 9.80665
     assert recognised(launch.default(), [4.1 * g] * 60_000) == []
-    assert recognised(launch.default(), [15.15 * g] * 60_000) == [17]
+    assert recognised(launch.default(), [0.0] * 1000 + [15.15 * g] * 59_000) == [1009]  # the tenth passes 9 g·ms
 
 
 def test_default_looks_forward_only():
@@ -335,10 +335,11 @@ def test_default_looks_forward_only():
 def test_settings_validate_and_build():
     adapter = pydantic.TypeAdapter(DetectorSettings)
     assert adapter.validate_python({}) == DetectorSettings()
-    read = adapter.validate_python({"trigger": 50.0, "window": 0.01, "axes": ["-z", "+y"], "rearm": False})
+    kind = {"kind": "multi-level-window"}
+    read = adapter.validate_python({**kind, "trigger": 50.0, "window": 0.01, "axes": ["-z", "+y"], "rearm": False})
     detector = launch.build(read, 1000.0)
     assert [k for k in range(30) if detector.step(0.001 * k, 0.0, 51.0, 0.0)] == [9]
-    assert launch.build(adapter.validate_python({"axes": "any"}), 100.0).step(0.0, 0.0, 0.0, 0.0) is False
+    assert launch.build(adapter.validate_python({**kind, "axes": "any"}), 100.0).step(0.0, 0.0, 0.0, 0.0) is False
     for wrong in (
         {"ratio": 1.2},
         {"levels": 0},
@@ -350,7 +351,7 @@ def test_settings_validate_and_build():
         with pytest.raises(pydantic.ValidationError):
             adapter.validate_python(wrong)
     with pytest.raises(ValueError, match="trigger must not be below"):
-        launch.build(DetectorSettings(trigger=40.0), 1000.0)
+        launch.build(DetectorSettings(kind="multi-level-window", trigger=40.0), 1000.0)
     with pytest.raises(ValueError, match="rate"):
         launch.build(DetectorSettings(), 0.0)
 

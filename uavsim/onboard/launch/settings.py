@@ -20,6 +20,8 @@ Level = Annotated[float, Interval(gt=0.0, le=2000.0)]
 Time = Annotated[float, Interval(gt=0.0, le=1.0)]
 Frequency = Annotated[float, Interval(gt=0.0, le=100_000.0)]
 
+BELOW = 0.1 * GRAVITY  # m/s², of a threshold that samples exceed: where a sum begins to grow instead
+
 
 @dataclass(frozen=True, slots=True)
 class CusumSettings:
@@ -49,8 +51,8 @@ class AdaptiveCusumSettings:
 
     Attributes
     ----------
-    reference : float
-        c, m/s². 44.13 is 4.5 g.
+    reference : float, optional
+        c, m/s². None: the detector's threshold less 0.1 g, by default 4.5 g.
     rise : float
         Most that a sample adds, m/s².
     fall : float
@@ -67,7 +69,7 @@ class AdaptiveCusumSettings:
         Time constant of the roughness, s; at least three periods of the accelerometer are taken.
     """
 
-    reference: Level = 44.13
+    reference: Level | None = None
     rise: Level = 9.80665
     fall: Level = 14.71
     limit: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.08826
@@ -216,7 +218,7 @@ USES: dict[Kind, tuple[str, ...]] = {
     "single-threshold": ("threshold", "window"),
     "double-threshold": ("threshold", "trigger", "window"),
     "cusum": ("cusum",),
-    "adaptive-cusum": ("adaptive",),
+    "adaptive-cusum": ("adaptive", "threshold"),
     "glr-bank": ("glr",),
     "px4": ("px4",),
     "px4-norm": ("px4",),
@@ -258,7 +260,8 @@ class DetectorSettings:
         thresholds to be held are its rivals; "px4" to "altos" fly the rules of those autopilots, whose defaults their
         groups have.
     threshold : float
-        G2, m/s². 45.11 is 4.6 g: above a centrifuge run at 4.1 g with its noise, below the weakest launch of 5 g.
+        G2, m/s². 45.11 is 4.6 g: above a centrifuge run at 4.1 g with its noise, below the weakest launch of 5 g. The
+        reference of "adaptive-cusum" lies 0.1 g below it.
     trigger : float, optional
         G1, m/s², not below the threshold. None: equal to it.
     window : float
@@ -326,8 +329,9 @@ def need(settings: DetectorSettings, push: float) -> tuple[str, float, str, floa
     if settings.kind == "cusum":
         return "cusum.reference", settings.cusum.reference, "cusum.limit", settings.cusum.limit / settings.cusum.rise
     if settings.kind == "adaptive-cusum":
-        own = settings.adaptive
-        return "adaptive.reference", own.reference, "adaptive.limit", own.limit / own.rise
+        own, key = settings.adaptive, "threshold" if settings.adaptive.reference is None else "adaptive.reference"
+        level = settings.threshold if own.reference is None else own.reference
+        return key, level, "adaptive.limit", own.limit / own.rise
     if settings.kind == "glr-bank":
         return "glr.reference", settings.glr.reference, "glr.windows", min(settings.glr.windows)
     trigger = None if "trigger" not in USES[settings.kind] else settings.trigger
@@ -389,6 +393,8 @@ def build(settings: DetectorSettings, rate: Annotated[float, Gt(0.0)]) -> Detect
     group = values.get(USES[s.kind][0])
     if is_dataclass(group) and not isinstance(group, type):
         values = asdict(group)
+    if s.kind == "adaptive-cusum" and s.adaptive.reference is None:
+        values["reference"] = s.threshold - BELOW
     return ONE_AXIS[s.kind](rate, axis=s.axes[0], **values)
 
 
