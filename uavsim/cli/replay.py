@@ -28,7 +28,7 @@ def replay(
 
     Example: uavsim replay output/catapult-1 --out output/again
 
-    Example: uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az --set detector.threshold=20
+    Example: uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az --set detector.kind=inav
     """
     if len(logs) == 1 and _is_flight(logs[0]):
         if mapping is not None or settings:

@@ -201,7 +201,7 @@ def _adaptive_cusum(d: Any) -> Parts:
 
 
 def _glr(d: Any) -> Parts:
-    lengths, limits = [n for _, n, _ in d._windows], [limit for _, _, limit in d._windows]
+    lengths, limits = [n for n, _ in d._windows], [limit for _, limit in d._windows]
     q = np.array([len(lengths), *lengths, *limits], np.int64)
     state = (0, 0, lengths[-1], *(0,) * (len(lengths) + lengths[-1]))
     return Parts("glr", (d._reference, d._fall, d._span, SCALE), q, y=state)
