@@ -18,6 +18,8 @@ from hypothesis import strategies as st
 from sensors import presets, record_at_rest
 from sensors.catalogue import FOLDER
 from uavsim import __version__, cli, cosim
+from uavsim.cli import common
+from uavsim.cli.fly import MOST_FLIGHTS, named, seeds_of
 from uavsim.flight import UNITS, load
 from uavsim.scenario import packaged
 
@@ -453,18 +455,18 @@ def test_what_cannot_be_replayed_is_told(run: Run, tmp_path: Path) -> None:
     ],
 )
 def test_seeds(text: str, seeds: list[int], name: str) -> None:
-    assert cli._seeds(text) == seeds
-    assert cli._named(seeds) == name
+    assert seeds_of(text) == seeds
+    assert named(seeds) == name
 
 
 @settings(deadline=None, derandomize=True)
 @given(st.text("0123456789-, ²x", max_size=12) | st.text(max_size=8))
 def test_any_text_is_seeds_or_refused(text: str) -> None:
     try:
-        seeds = cli._seeds(text)
+        seeds = seeds_of(text)
     except typer.BadParameter:
         return
-    assert 0 < len(seeds) == len(set(seeds)) <= cli.MOST_FLIGHTS
+    assert 0 < len(seeds) == len(set(seeds)) <= MOST_FLIGHTS
     assert all(0 <= seed < 2**63 for seed in seeds)
 
 
@@ -484,8 +486,9 @@ cli.main()
 COUNTING = """
 import sys
 from uavsim import cli
+from uavsim.cli import common
 if __name__ == "__main__":
-    cli._Bar.show = lambda self, share: print(share, flush=True)
+    common.Bar.show = lambda self, share: print(share, flush=True)
     cli.main()
 """
 
@@ -535,7 +538,7 @@ def test_ctrl_c_on_the_bench_leaves_nothing(run: Run, tmp_path: Path, monkeypatc
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli._Bar, "show", interrupt)
+    monkeypatch.setattr(common.Bar, "show", interrupt)
     result = run("sensors", "bmp390", "--hours", "0.1")
     assert (result.status, result.err) == (130, "")
     assert list(tmp_path.iterdir()) == []
@@ -591,9 +594,9 @@ def test_a_closed_output_is_no_reason_to_fail(tmp_path: Path) -> None:
 def test_progress_is_shown_on_a_terminal_to_those_who_wait(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], terminal: bool, patience: float, shown: bool
 ) -> None:
-    monkeypatch.setattr(cli, "PATIENCE", patience)
+    monkeypatch.setattr(common, "PATIENCE", patience)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
-    with cli._Bar("flying") as bar:
+    with common.Bar("flying") as bar:
         bar.show(0.5)
         bar.show(0.9)
     out, err = capsys.readouterr()

@@ -4,6 +4,7 @@ import json
 import os
 import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -43,7 +44,7 @@ def read(tmp_path: Path):
     return call
 
 
-def detections(recording: Recording, **settings: float) -> list[float]:
+def detections(recording: Recording, **settings: Any) -> list[float]:
     flight = replay_log(recording, DetectorSettings(**settings) if settings else None)
     return flight.score["recording"]["detections"]
 
@@ -299,14 +300,14 @@ def test_later_launches_are_found_after_a_pause(read) -> None:
     later = frame(end=12.0, onset=8.0)
     again = frame(end=12.0, onset=ONSET + 0.6)  # within the pause of the first
     table["fx"] = np.maximum(np.maximum(table["fx"], later["fx"]), again["fx"])
-    found = detections(read(table))
+    found = detections(read(table), kind="multi-level-window")
     assert found == pytest.approx([ONSET + 0.018, 8.018], abs=0.006)
 
 
 def test_a_force_that_lasts_is_found_again_each_pause(read) -> None:
     table = frame()
     table.loc[table["t"] >= ONSET, "fx"] = 60.0
-    found = detections(read(table))
+    found = detections(read(table), kind="multi-level-window")
     assert len(found) == 3
     assert np.diff(found) == pytest.approx(PAUSE + 0.018, abs=0.006)
 
@@ -315,7 +316,7 @@ def test_nothing_found_is_null(read) -> None:
     flight = replay_log(read(frame(end=2.0)))
     assert flight.score["launch"]["detected_time"] is None
     assert flight.events == []
-    assert view.lines(flight)[-1].startswith("multi-level-window: no launch detected; the greatest f_x is 0.")
+    assert view.lines(flight)[-1].startswith(f"{DetectorSettings().kind}: no launch detected; the greatest f_x is 0.")
 
 
 def test_the_score_has_the_keys_of_a_flights(read, catapult) -> None:
@@ -497,8 +498,10 @@ def test_a_truncated_ulog_is_replayed_as_far_as_it_goes(tmp_path: Path, cut: int
 )
 def test_real_launches_are_found(name: str, mapping: str, threshold: float | None, first: float, last: float) -> None:
     recording = read_log([Path(str(RECORDINGS)) / name], mapping)
-    found = detections(recording, **({} if threshold is None else {"threshold": threshold}))
+    found = detections(
+        recording, **({} if threshold is None else {"kind": "multi-level-window", "threshold": threshold})
+    )
     assert first <= found[0] <= last
     if threshold is not None:
         assert len(found) == 1
-        assert json.dumps(detections(recording)) == "[]"  # the default's 4.6 g see no throw by hand
+        assert json.dumps(detections(recording)) == "[]"  # the default sees no throw by hand

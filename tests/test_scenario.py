@@ -21,6 +21,7 @@ import tomli_w
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import uavsim
 from sensors import presets
 from uavsim.flight import Flight, write_toml
 from uavsim.plants.hangar import hangar
@@ -91,7 +92,7 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
         ("air_data.static.mode=x5/x5", "--set: air_data.static: bmp390: mode 'x5/x5' is unknown; nearest:"),
         ("accelerometer.rate=1001", "rate 1001.0 is unknown; nearest: 833; allowed: 12.5, 26"),
         ("accelerometer.range_g=17", "range_g 17.0 is unknown; nearest: 16; allowed: 4, 8, 16, 32"),
-        ("detector.trigger=20", "detector.trigger = 20: must be at least the threshold, 45.11 m/s²"),
+        ("detector.trigger=20", "detector.trigger: is not read by kind = 'adaptive-cusum'"),
         ("detector.threshold=400", "±32 g can never be sure to show it"),
         ("accelerometer.range_g=4", "--set: detector.threshold = 45.11 m/s²: lsm6dso32 at ±4 g can never"),
         ("launcher.wait_max=1.7", "launcher.wait_max = 1.7: must be at least wait_min = 2 s"),
@@ -222,10 +223,18 @@ def test_the_line_blames_whoever_gave_the_key(tmp_path: Path) -> None:
     assert complaint(file=file, sets="air_data.cover_off=0.6").startswith("--set: ")
     file.write_text("[launcher]\nwait_min = 2.5\n[air_data]\ntare_duration = 2.1\n")
     assert complaint(file=file, sets="seed=2").startswith(f"{file}: air_data.tare_duration")
-    with pytest.raises(ValueError, match=r"^--seed: seed = -1"):
+    with pytest.raises(ValueError, match=r"^seed: seed = -1: must be a whole number from 0"):
         load_scenario("catapult", seed=-1)
+    with pytest.raises(ValueError, match=r"^--seed: seed = -1: must be"):
+        load_scenario("catapult", seed=-1, seed_name="--seed")
     with pytest.raises(ValueError, match=r"^scenario: seed = -1"):
         Scenario().with_seed(-1)
+
+
+def test_a_wrong_seed_given_in_python_names_no_option() -> None:
+    with pytest.raises(ValueError, match=r"^seed: seed = -1: must be a whole number from 0") as error:
+        uavsim.fly(seed=-1)
+    assert "--" not in str(error.value)
 
 
 # -- what is right ---------------------------------------------------------------------------------------------------
@@ -242,6 +251,7 @@ def test_values_may_leave_out_their_quotes_but_keep_their_type() -> None:
             "description=true",
             "launcher.stroke=6",
             "launcher.stroke=7  # the last one counts",
+            "detector.kind=multi-level-window",
             "detector.rearm=false",
             "accelerometer.bias=[0, 0.1, -0.2]",
             "aircraft.properties.wing/opening-rate-per_sec=3",

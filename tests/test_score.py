@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from uavsim.scenario import Scenario
-from uavsim.score import Judged, outcome, score
+from uavsim.score import Judged, launch_axis, outcome, score
 from uavsim.truth import STANDARD_GRAVITY
 
 RELEASE, EXIT, WINGS, OUT, MOTOR, END = 2.0, 2.4, 2.52, 2.8, 2.77, 12.0
@@ -116,7 +116,7 @@ def test_times_of_a_plain_flight() -> None:
     assert launch["latency"] == pytest.approx(0.015)
     assert launch["latency_from_crossing"] == pytest.approx(0.004)
     assert launch["false_detections"] == 0
-    assert launch["detector"] == "multi-level-window"
+    assert launch["detector"] == Scenario().detector.kind
     assert flight["rail_exit_time"] == EXIT
     assert flight["rail_exit_speed"] == pytest.approx(26.0)
     assert flight["wing_start_time"] == pytest.approx(WINGS, abs=1.1e-3)
@@ -542,3 +542,57 @@ def test_what_the_cover_left_in_sensor_and_filter_is_no_error_of_the_total_press
     assert just_uncovered.sum() >= 3
     estimate["p_total"] = np.where(just_uncovered, flight.estimate("p_total") - 30.0, flight.estimate("p_total"))
     assert score(flight)["pressure"]["total"]["bias"] == pytest.approx(70.0, abs=0.05)
+
+
+# -- rigs ------------------------------------------------------------------------------------------------------------
+
+
+def rigged(**more: Any) -> Judged:
+    """The same tables as of the plain flight, but on a centrifuge that listens down."""
+    return made(plant={"kind": "centrifuge"}, detector={"axes": ("-z",)}, expect="completed", **more)
+
+
+def test_a_rig_is_scored_over_its_whole_run_and_completes() -> None:
+    force = setting("fz", -5.0 * STANDARD_GRAVITY, 3.0)
+
+    def change(truth: dict[str, np.ndarray]) -> None:
+        truth["fz"] = np.zeros_like(truth["t"])
+        force(truth)
+
+    flight = rigged(change=change, events=(("launch_detected", 1.0), ("launch_detected", 3.02)))
+    result = score(flight)
+    assert result["outcome"] == "completed"
+    assert result["launch"]["crossing_time"] == pytest.approx(3.0)
+    assert result["launch"]["latency_from_crossing"] == pytest.approx(0.02)
+    assert (result["launch"]["detections"], result["launch"]["false_detections"]) == (2, 1)
+    assert result["flight"]["rail_exit_time"] is None
+    assert result["airspeed"]["samples"] == len(flight.tables["estimate"]["t"])
+    assert result["airspeed"]["cruise"]["samples"] == 0
+    assert set(flight.phases()) == {"run"}
+
+
+def test_a_rig_can_diverge() -> None:
+    assert outcome(rigged(ended="diverged", change=setting("fx", math.nan, 3.0))) == "diverged"
+
+
+def test_without_an_airspeed_there_is_no_figure_of_it() -> None:
+    def change(truth: dict[str, np.ndarray]) -> None:
+        truth["fz"] = np.zeros_like(truth["t"])
+        truth["airspeed"] = np.full_like(truth["t"], np.nan)
+
+    airspeed = score(rigged(change=change))["airspeed"]
+    assert airspeed["rmse"] is airspeed["valid_fraction"] is airspeed["coverage_95"] is None
+    assert airspeed["samples"] == 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "axes", "axis"),
+    [
+        ("jsbsim", ("+z",), "+x"),
+        ("centrifuge", ("+z",), "+z"),
+        ("centrifuge", "any", "+x"),
+        ("launch-curve", ("+x", "-x"), "+x"),
+    ],
+)
+def test_the_launch_is_along_the_detectors_axis_of_a_rig(kind: Any, axes: Any, axis: str) -> None:
+    assert launch_axis(kind, axes) == axis

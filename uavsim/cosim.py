@@ -2,10 +2,10 @@
 
     plant --truth--> sensors --readings--> flight computer --commands--> plant
 
-The plant steps at its own interval. After each step every sensor whose sample is due gives it, in the order of the
-time stamps (an accelerometer reading before a pressure reading of the same instant), and the flight computer takes it;
-its commands act from the plant's next step on. This module alone copies numbers from the description of a sensor into
-the settings of a filter.
+The plant, the aircraft in JSBSim or a rig, steps at its own interval. After each step every sensor whose sample is due
+gives it, in the order of the time stamps (an accelerometer reading before a pressure reading of the same instant), and
+the flight computer takes it; its commands act from the plant's next step on. This module alone copies numbers from the
+description of a sensor into the settings of a filter.
 """
 
 import math
@@ -21,15 +21,17 @@ from uavsim import __version__
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import Estimate, FlightComputer
+from uavsim.plants.plant import Plant, Run
+from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import PLANT_STEP, Scenario, load_scenario
-from uavsim.score import Judged, score
+from uavsim.score import Judged, launch_axis, score
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from uavsim.plants.jsbsim import JsbsimPlant, JsbsimSettings
+    from uavsim.plants.jsbsim import JsbsimSettings
 
 STEP_RATE = 1.0 / PLANT_STEP  # Hz, 1000 exactly
 CHUNK = 500  # steps between two looks at the progress
@@ -106,6 +108,7 @@ class Onboard:
             self._detector,
             airspeed.build(scenario.estimator, believed_noise(scenario), tare),
             rate,
+            launch_axis(scenario.plant.kind, scenario.detector.axes),
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
         self.estimates: list[Estimate] = []
@@ -151,18 +154,20 @@ class Cosimulation:
         Instead of the scenario's own; for tests.
     """
 
-    def __init__(self, scenario: Scenario, index: int = 0, plant: "JsbsimPlant | None" = None) -> None:
+    def __init__(self, scenario: Scenario, index: int = 0, plant: Plant | None = None) -> None:
         self.scenario = scenario
         self.draws = draw(scenario, index)
         self.plant = make_plant(scenario, self.draws) if plant is None else plant
         streams = Streams(scenario.seed, index)
         release = self.draws.release_time
+        pushed = scenario.plant.kind == AIRCRAFT  # a rig does not make an airframe ring
+        push = scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor if pushed else 0.0
         self.vibration = Vibration(
             scenario.vibration,
             streams,
             dt=1.0 / STEP_RATE,
             release_time=release,
-            plateau=scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor,
+            plateau=push,
             rise=scenario.launcher.rise,
             scale=scenario.accelerometer.vibration_scale,
         )
@@ -257,7 +262,7 @@ def believed_noise(scenario: Scenario) -> airspeed.NoiseModel:
 
 
 def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
-    """Settings of the plant of a scenario's flight."""
+    """Settings of the aircraft's plant for a scenario's flight."""
     from uavsim.plants.jsbsim import JsbsimSettings
 
     return JsbsimSettings(
@@ -273,17 +278,30 @@ def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
     )
 
 
-def make_plant(scenario: Scenario, draws: Draws) -> "JsbsimPlant":
-    """Make the plant of a scenario's flight.
+def make_plant(scenario: Scenario, draws: Draws) -> Plant:
+    """Make the plant of a scenario's flight: the aircraft, or the rig that it chooses.
 
     Raises
     ------
     ValueError
-        An aircraft or property that does not exist.
+        An aircraft or property that does not exist; a rig that cannot be.
     """
-    from uavsim.plants.jsbsim import JsbsimPlant
+    if scenario.plant.kind == AIRCRAFT:
+        from uavsim.plants.jsbsim import JsbsimPlant
 
-    return JsbsimPlant(plant_settings(scenario, draws))
+        return JsbsimPlant(plant_settings(scenario, draws))
+    from uavsim.plants.rigs import RIGS
+
+    run = Run(
+        environment=scenario.environment,
+        launcher=scenario.launcher,
+        duration=scenario.duration,
+        release_time=draws.release_time,
+        force_factor=draws.force_factor,
+        random_seed=draws.plant_seed,
+        step_rate=STEP_RATE,
+    )
+    return RIGS[scenario.plant.kind](scenario.plant, run)
 
 
 def fly(

@@ -29,13 +29,14 @@ from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSetti
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.onboard.launch.settings import USES, need, unread
 from uavsim.plants.hangar import find_aircraft, hangar
+from uavsim.plants.rig_settings import PlantSettings, length
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.score import Judged, score
 from uavsim.settings import SettingError
 
 Part = TypeVar("Part", AccelerometerSettings, PressureSettings)
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
-Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout"]
+Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout", "completed"]
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
@@ -103,6 +104,7 @@ class Scenario:
     duration: Annotated[float, Interval(ge=1, le=3600)] = 35.0
     seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 1
     expect: Outcome = "cruise"
+    plant: PlantSettings = field(default_factory=PlantSettings)
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)
     environment: EnvironmentSettings = field(default_factory=EnvironmentSettings)
     launcher: LauncherSettings = field(default_factory=LauncherSettings)
@@ -149,7 +151,9 @@ def packaged_names() -> list[str]:
     return sorted(file.stem for file in PACKAGED.glob("*.toml"))
 
 
-def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: int | None = None) -> Scenario:
+def load_scenario(
+    source: str | Path, *, overrides: Iterable[str] = (), seed: int | None = None, seed_name: str = "seed"
+) -> Scenario:
     """Read a scenario.
 
     Parameters
@@ -160,11 +164,13 @@ def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: in
         ``KEY=VALUE`` each, with the key joined by dots and the value as TOML has it (quotes may be left out).
     seed
         Instead of the scenario's own.
+    seed_name
+        What the seed is called where the user gave it, for the error.
 
     Raises
     ------
     ValueError
-        One line that names the file or ``--set``, the key and what is allowed.
+        One line that names the file, ``--set`` or the seed's name, the key and what is allowed.
     """
     path = _find(source)
     where = path.stem if path.parent == PACKAGED else str(path)
@@ -175,7 +181,7 @@ def load_scenario(source: str | Path, *, overrides: Iterable[str] = (), seed: in
         for override in overrides:
             origins[_apply(values, override)] = "--set"
         if seed is not None:
-            values["seed"], origins["seed"] = seed, "--seed"
+            values["seed"], origins["seed"] = seed, seed_name
         scenario = _checked(values)
         _check_requirements(scenario)
     except SettingError as error:
@@ -327,6 +333,15 @@ def _check_times(s: Scenario) -> None:
             "launcher.wait_max",
             "launcher.wait_min",
         )
+    run = length(s.plant)
+    if run and s.duration < launcher.wait_max + run:
+        raise SettingError(
+            f"duration = {s.duration:g}: must hold the longest wait, launcher.wait_max = {launcher.wait_max:g} s, and "
+            f"the run of plant.kind = {s.plant.kind!r}, {run:g} s",
+            "duration",
+            "launcher.wait_max",
+            "plant",
+        )
     if s.duration <= launcher.wait_max:
         raise SettingError(
             f"duration = {s.duration:g}: must be longer than the longest wait, launcher.wait_max = "
@@ -411,7 +426,8 @@ def _check_detector(s: Scenario) -> None:
         )
     if kind != "multi-level-window" and (s.detector.axes == "any" or len(s.detector.axes) != 1):
         raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind}'", "detector.axes")
-    key, level, long, time = need(s.detector)
+    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
+    key, level, long, time = need(s.detector, push)
     if key == "trigger" and level < s.detector.threshold:
         raise SettingError(
             f"detector.trigger = {level:g}: must be at least the threshold, {s.detector.threshold:g} m/s²",
@@ -425,15 +441,13 @@ def _check_detector(s: Scenario) -> None:
     scale = min(3.0 * part.scale_sd, part.scale_limit)
     reach = part.range * (1.0 - scale) - bias - STANDARD_GRAVITY
     if level >= reach:
-        shown = f"{kind}, " if key == "kind" else ""
         raise SettingError(
-            f"detector.{key} = {shown}{level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; "
+            f"detector.{key} = {level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; "
             f"less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
             f"{reach:.1f} m/s²",
             f"detector.{key}",
             "accelerometer",
         )
-    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
     shortest = math.sqrt(2.0 * s.launcher.stroke / push)  # all of the push from the start, nothing against it
     if time >= shortest:
         raise SettingError(

@@ -7,12 +7,15 @@ Everything is judged against the plant's truth, by times that come from the trut
 * stroke: 50 ms after the true launch … rail exit; transition: … wing out + 2 s (rail exit + 4 s without a wing);
   cruise: the rest. Headline figures are over the three together.
 
+A rig has neither rail nor wing: it is scored over its whole run, its outcome is `completed`, and its crossing is that
+of the true specific force along the detector's axis. Where there is no airspeed there is no figure of it.
+
 Truth is interpolated linearly to the time of an estimate's row. Raw and filtered figures are over the same rows, those
 at which both exist; rows that the estimator itself calls invalid count. A value that does not exist is None (null in
 JSON), never 0.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.plants.rig_settings import AIRCRAFT, PlantKind
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
@@ -37,6 +41,12 @@ SPEED_TOLERANCE = 2.0  # m/s
 BANK_LIMIT = np.pi / 6.0  # rad
 TWO_SIGMA = 1.959964  # standard normal quantile of 97.5 %
 PHASES = ("stroke", "transition", "cruise")
+RUN = "run"  # the one phase of a rig
+
+
+def launch_axis(kind: PlantKind, axes: Sequence[str]) -> str:
+    """Signed body axis of the launch: +x of an aircraft; of a rig the detector's, if it is one."""
+    return "+x" if kind == AIRCRAFT or isinstance(axes, str) or len(axes) != 1 else axes[0]
 
 
 @dataclass(frozen=True)
@@ -74,6 +84,11 @@ class Judged:
         """Estimate column as floats."""
         return np.asarray(self.tables["estimate"][column], dtype=float)
 
+    @property
+    def is_rig(self) -> bool:
+        """Whether it was on a rig and not in flight."""
+        return bool(self.scenario["plant"]["kind"] != AIRCRAFT)
+
     @cached_property
     def time(self) -> Array:
         """Times of the truth's rows, s."""
@@ -90,12 +105,16 @@ class Judged:
 
     @cached_property
     def crossing_time(self) -> float | None:
-        """When the true specific force first exceeds 4.5 g, s."""
-        return self._first(self.truth("fx") > CROSSING, self.release_time)
+        """When the true specific force along the launch first exceeds 4.5 g, s."""
+        axis = launch_axis(self.scenario["plant"]["kind"], self.scenario["detector"]["axes"])
+        force = self.truth(f"f{axis[1]}") * (-1.0 if axis[0] == "-" else 1.0)
+        return self._first(force > CROSSING, self.release_time)
 
     @cached_property
     def rail_exit_time(self) -> float | None:
         """When the last shoe leaves, s: the way along the rail has become the stroke."""
+        if self.is_rig:
+            return None
         stroke = self.scenario["launcher"]["stroke"]
         return self._first(self.truth("rail_s") >= stroke, self.release_time)
 
@@ -131,6 +150,8 @@ class Judged:
     def edges(self) -> dict[str, tuple[float, float]]:
         """First and last time of each scored phase, s; phases that were not reached are absent."""
         true, end = self.true_time, float(self.time[-1]) if self.time.size else 0.0
+        if self.is_rig:
+            return {RUN: (float(self.time[0]), end)} if self.time.size else {}
         if true is None:
             return {}
         start, exit_time = true + STROKE_LEAD, self.rail_exit_time
@@ -179,10 +200,12 @@ def score(flight: Judged) -> dict[str, Any]:
 
 
 def outcome(flight: Judged) -> str:
-    """Name the first that applies: diverged, false_launch, missed_launch, crashed, timeout, cruise."""
+    """Name the first that applies: diverged, completed, false_launch, missed_launch, crashed, timeout, cruise."""
     wings, exit_time, detected = flight.event_time("wings_commanded"), flight.rail_exit_time, flight.detected_time
     if flight.ended == "diverged":
         return "diverged"
+    if flight.is_rig:
+        return "completed"
     if wings is not None and (exit_time is None or wings < exit_time):
         return "false_launch"
     limit = np.inf if exit_time is None else exit_time + MISSED_AFTER
@@ -215,6 +238,7 @@ def _launch(flight: Judged) -> dict[str, Any]:
         "detected_time": detected,
         "latency": _difference(detected, flight.true_time),
         "latency_from_crossing": _difference(detected, flight.crossing_time),
+        "detections": len(flight.detections),
         "false_detections": sum(t < flight.release_time for t in flight.detections),
         "detector": flight.scenario["detector"]["kind"],
     }
@@ -227,7 +251,8 @@ def _airspeed(flight: Judged) -> dict[str, Any]:
     raw = flight.estimate("airspeed_raw") - truth
     sd = flight.estimate("airspeed_sd")
     valid = flight.estimate("valid")
-    figures = {"": flight.rows(time)} | {name: flight.rows(time, name) for name in PHASES}
+    exists = not np.isnan(flight.truth("airspeed")).all()
+    figures = {"": flight.rows(time) & exists} | {name: flight.rows(time, name) & exists for name in PHASES}
     result = {name: _figures(error[rows], raw[rows], sd[rows], valid[rows]) for name, rows in figures.items()}
     return {**result.pop(""), **result}
 

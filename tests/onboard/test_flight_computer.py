@@ -438,7 +438,7 @@ def test_a_knock_then_a_launch_with_the_detector_that_flies() -> None:
     """10 g for 60 ms is recognised, is no launch, and does not keep the launch 3 s later from being recognised."""
     box = FlightComputer(
         SETTINGS,
-        MultiLevelWindow(trigger=45.11, threshold=45.11, samples=18, levels=4, ratio=0.8, max_gap=0.003),
+        MultiLevelWindow(trigger=45.11, threshold=45.11, samples=18, levels=4, ratio=0.8, period=0.001),
         Oracle(),
         RATE,
     )

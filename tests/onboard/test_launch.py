@@ -177,58 +177,63 @@ def test_times_that_do_not_increase_are_ignored():
 
 
 def test_gap_abandons_the_window():
-    def run(gap, max_gap):
-        detector = make(levels=1, max_gap=max_gap, rearm=False)
+    def run(gap, period):
+        detector = make(levels=1, period=period, rearm=False)
         times = [0.001 * k for k in range(5)] + [0.004 + gap + 0.001 * k for k in range(30)]
         return [k for k, t in enumerate(times) if detector.step(t, 50.0, 0.0, 0.0)]
 
-    assert run(0.003, 0.003) == [9]  # not longer than the limit, also in floating point
-    assert run(0.0031, 0.003) == [14]  # the sample after the gap opens a new window, and the failed one is not held
+    assert run(0.003, 0.001) == [7]  # not longer than the limit, also in floating point: five, three and two make ten
+    assert run(0.0031, 0.001) == [14]  # the sample after the gap opens a new window, and the failed one is not held
     assert run(10.0, None) == [9]
 
 
 @pytest.mark.parametrize("start", [0.0, 0.1, 7.3, 1234.567])
-def test_two_missing_samples_are_no_gap_and_three_are(start):
-    """Three nominal periods at 1 kHz, whatever the rounding of k/rate."""
-    detector = launch.default()
-    times = [start + k / 1000.0 for k in range(40) if k % 3 == 0]
-    assert [k for k, t in enumerate(times) if detector.step(t, 60.0, 0.0, 0.0)] == []
-    assert detector.total == len(times)
-    gap = times[-1] + 0.004
-    detector.step(gap, 60.0, 0.0, 0.0)
-    assert detector.total == 1  # three missing samples are one
+def test_two_missing_samples_cost_no_time_and_three_are_a_gap(start):
+    """Three nominal periods at 1 kHz, whatever the rounding of k/rate: 18 ms are full with the sample at 18 ms."""
+    times = [start + k / 1000.0 for k in range(19) if k % 3 == 0]
+    detector = launch.build(DetectorSettings(kind="multi-level-window"), 1000.0)
+    assert [k for k, t in enumerate(times) if detector.step(t, 60.0, 0.0, 0.0)] == [6]
+    detector.reset()
+    assert [k for k, t in enumerate(times[:5]) if detector.step(t, 60.0, 0.0, 0.0)] == []
+    assert detector.total == 13
+    detector.step(times[4] + 0.004, 60.0, 0.0, 0.0)
+    assert detector.total == 1
 
 
 def test_gap_before_the_window_does_not_matter():
-    detector = make(max_gap=0.003, levels=1)
+    detector = make(period=0.001, levels=1)
     detector.step(0.0, 0.0, 0.0, 0.0)
     assert [k for k in range(20) if detector.step(5.0 + 0.001 * k, 50.0, 0.0, 0.0)] == [9]
 
 
-def naive(times, force, *, trigger, threshold, samples, levels, ratio, rearm, max_gap):
-    """The definition read word by word over a whole record: index of recognition, or None."""
-    kept = []
+def naive(times, force, *, trigger, threshold, samples, levels, ratio, rearm, period):
+    """The definition read word by word over a whole record: index of recognition, or None.
+
+    A sample that comes two or three periods after the last stands in the record two or three times.
+    """
+    kept = []  # index, whether there is a gap before it
+    last = None
     for index, t in enumerate(times):
-        if not kept or t > times[kept[-1]]:
-            kept.append(index)
+        if last is None or t > last:
+            ticks = 1 if last is None or not period else round((t - last) / period)
+            kept += [(index, ticks > 3)] + [(index, False)] * (ticks - 1 if ticks <= 3 else 0)
+            last = t
     numerator, denominator = ratio
     start = 0
     while start < len(kept):
-        if not force[kept[start]] > trigger:
+        if not force[kept[start][0]] > trigger:
             start += 1
             continue
         for level in range(1, levels + 1):
             window = kept[start : start + level * samples]
-            gaps = [
-                k for k in range(1, len(window)) if max_gap and times[window[k]] - times[window[k - 1]] > max_gap + 1e-9
-            ]
+            gaps = [k for k in range(1, len(window)) if window[k][1]]
             if gaps:
                 start += gaps[0]
                 break
             if len(window) < level * samples:
                 return None
-            if sum(force[k] > threshold for k in window) * denominator >= numerator * len(window):
-                return window[-1]
+            if sum(force[k] > threshold for k, _ in window) * denominator >= numerator * len(window):
+                return window[-1][0]
         else:
             start += levels * samples
             if not rearm:
@@ -237,7 +242,7 @@ def naive(times, force, *, trigger, threshold, samples, levels, ratio, rearm, ma
 
 
 SAMPLE = st.tuples(
-    st.sampled_from([0.001, 0.001, 0.001, 0.001, 0.002, 0.005, 0.0, -0.001]),
+    st.sampled_from([0.001, 0.001, 0.001, 0.001, 0.002, 0.003, 0.005, 0.0, -0.001]),
     *[st.sampled_from([50.0, 50.0, 47.0, 44.0, 0.0, -47.0, -50.0, NAN])] * 3,
 )
 
@@ -251,9 +256,9 @@ SAMPLE = st.tuples(
     ratio=st.sampled_from([(1, 5), (1, 2), (11, 20), (2, 3), (4, 5), (1, 1)]),
     axes=st.one_of(st.just("any"), st.lists(st.sampled_from(ALL_AXES), min_size=1, unique=True).map(tuple)),
     rearm=st.booleans(),
-    max_gap=st.sampled_from([None, 0.003]),
+    period=st.sampled_from([None, 0.001]),
 )
-def test_against_the_definition(record, trigger, samples, levels, ratio, axes, rearm, max_gap):
+def test_against_the_definition(record, trigger, samples, levels, ratio, axes, rearm, period):
     common = {"trigger": trigger, "threshold": 43.0, "samples": samples, "levels": levels, "rearm": rearm}
     steps, *force = zip(*record, strict=True) if record else ((), (), (), ())
     times = [0.001 * round(1000 * t) for t in np.cumsum(steps)]
@@ -262,10 +267,10 @@ def test_against_the_definition(record, trigger, samples, levels, ratio, axes, r
             along = [np.fmax.reduce(np.abs(np.array(force)), axis=0, initial=0.0).tolist()]
     else:
         along = [[float(axis[0] + "1") * f for f in force["xyz".index(axis[1])]] for axis in axes]
-    expected = [naive(times, f, ratio=ratio, max_gap=max_gap, **common) for f in along]
+    expected = [naive(times, f, ratio=ratio, period=period, **common) for f in along]
     first = min((k for k in expected if k is not None), default=None)
 
-    detector = MultiLevelWindow(**common, ratio=ratio[0] / ratio[1], axes=axes, max_gap=max_gap)
+    detector = MultiLevelWindow(**common, ratio=ratio[0] / ratio[1], axes=axes, period=period)
     answers = [k for k, (t, *f) in enumerate(zip(times, *force, strict=True)) if detector.step(t, *f)]
     assert answers == ([] if first is None else [first])
 
@@ -299,8 +304,8 @@ def test_units_and_origin_of_time_do_not_matter(force, scale, shift):
         {"axes": ("x",)},
         {"axes": ("+x", "+x")},
         {"axes": "all"},
-        {"max_gap": 0.0},
-        {"max_gap": NAN},
+        {"period": 0.0},
+        {"period": NAN},
     ],
 )
 def test_settings_out_of_bounds_are_refused(changes):
@@ -309,17 +314,17 @@ def test_settings_out_of_bounds_are_refused(changes):
 
 
 @pytest.mark.parametrize(("rate", "samples"), [(1000.0, 18), (3200.0, 58), (104.0, 2), (50.0, 1), (20.0, 1)])
-def test_default_keeps_its_window_in_time(rate, samples):
-    detector = launch.default(rate)
-    assert recognised(detector, [46.0] * 100, period=1.0 / rate) == [samples - 1]
-    assert recognised(launch.default(rate), [45.1] * 100, period=1.0 / rate) == []
+def test_multi_level_window_keeps_its_window_in_time(rate, samples):
+    chosen = DetectorSettings(kind="multi-level-window")
+    assert recognised(launch.build(chosen, rate), [46.0] * 100, period=1.0 / rate) == [samples - 1]
+    assert recognised(launch.build(chosen, rate), [45.1] * 100, period=1.0 / rate) == []
 
 
 def test_default_at_the_centrifuge():
     """The published centrifuge: 4.1 g must not be recognised, 15.15 g must; 60 s without noise."""
     g = 9.80665
     assert recognised(launch.default(), [4.1 * g] * 60_000) == []
-    assert recognised(launch.default(), [15.15 * g] * 60_000) == [17]
+    assert recognised(launch.default(), [0.0] * 1000 + [15.15 * g] * 59_000) == [1009]  # the tenth passes 9 g·ms
 
 
 def test_default_looks_forward_only():
@@ -330,10 +335,11 @@ def test_default_looks_forward_only():
 def test_settings_validate_and_build():
     adapter = pydantic.TypeAdapter(DetectorSettings)
     assert adapter.validate_python({}) == DetectorSettings()
-    read = adapter.validate_python({"trigger": 50.0, "window": 0.01, "axes": ["-z", "+y"], "rearm": False})
+    kind = {"kind": "multi-level-window"}
+    read = adapter.validate_python({**kind, "trigger": 50.0, "window": 0.01, "axes": ["-z", "+y"], "rearm": False})
     detector = launch.build(read, 1000.0)
     assert [k for k in range(30) if detector.step(0.001 * k, 0.0, 51.0, 0.0)] == [9]
-    assert launch.build(adapter.validate_python({"axes": "any"}), 100.0).step(0.0, 0.0, 0.0, 0.0) is False
+    assert launch.build(adapter.validate_python({**kind, "axes": "any"}), 100.0).step(0.0, 0.0, 0.0, 0.0) is False
     for wrong in (
         {"ratio": 1.2},
         {"levels": 0},
@@ -345,7 +351,7 @@ def test_settings_validate_and_build():
         with pytest.raises(pydantic.ValidationError):
             adapter.validate_python(wrong)
     with pytest.raises(ValueError, match="trigger must not be below"):
-        launch.build(DetectorSettings(trigger=40.0), 1000.0)
+        launch.build(DetectorSettings(kind="multi-level-window", trigger=40.0), 1000.0)
     with pytest.raises(ValueError, match="rate"):
         launch.build(DetectorSettings(), 0.0)
 

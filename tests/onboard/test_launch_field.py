@@ -130,7 +130,7 @@ def test_a_gap_begins_anew(kind):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"threshold": NAN}, {"hold": 0.0}, {"hold": NAN}, {"rate": 0.0}, {"rate": math.inf}, {"axis": "x"}]
+    "wrong", [{"acceleration": NAN}, {"time": 0.0}, {"time": NAN}, {"rate": 0.0}, {"rate": math.inf}, {"axis": "x"}]
 )
 @pytest.mark.parametrize("kind", [Px4, Inav])
 def test_settings_out_of_bounds_are_refused(kind, wrong):

@@ -345,4 +345,4 @@ def test_the_launch_figure_draws_the_levels_that_the_kind_reads(kind: str, level
     from uavsim.views.record import Record
 
     flight = uavsim.fly("catapult", overrides=[f"detector.kind={kind}", "duration=6"])
-    assert launch._levels(Record(flight)) == pytest.approx(levels, abs=0.01)
+    assert launch.levels(Record(flight)) == pytest.approx(levels, abs=0.01)

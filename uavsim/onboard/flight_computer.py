@@ -133,6 +133,8 @@ class FlightComputer:
         What it asks.
     accelerometer_rate
         Nominal output data rate, Hz; sets how many readings the short mean of f_x holds.
+    axis
+        Signed body axis that points along the launch; what is said of f_x holds for it.
 
     Attributes
     ----------
@@ -145,7 +147,12 @@ class FlightComputer:
     """
 
     def __init__(
-        self, settings: FlightComputerSettings, detector: Detector, estimator: Estimator, accelerometer_rate: float
+        self,
+        settings: FlightComputerSettings,
+        detector: Detector,
+        estimator: Estimator,
+        accelerometer_rate: float,
+        axis: str = "+x",
     ) -> None:
         self.settings = settings
         self.detector = detector
@@ -153,6 +160,7 @@ class FlightComputer:
         self.state = "waiting"
         self.commands: Commands = (0.0, 0.0, radians(settings.launch_pitch_deg), 0.0, 0.0)
         self.events: list[dict[str, Any]] = []
+        self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
         self._block_start: float | None = None
@@ -172,12 +180,13 @@ class FlightComputer:
         state = self.state
         if state == "flying":
             return
+        along = fx if self._axis is None else self._axis[1] * (fx, fy, fz)[self._axis[0]]
         if state == "waiting":
-            self._average_rail(t, fx)
+            self._average_rail(t, along)
             if self.detector.step(t, fx, fy, fz):
                 self._detected(t)
         elif state == "stroke":
-            self._follow_stroke(t, fx)
+            self._follow_stroke(t, along)
         elif t >= self._next_action:
             self._act(t)
 

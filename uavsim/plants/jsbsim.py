@@ -47,6 +47,7 @@ from uavsim.plants.columns import (
     WING,
 )
 from uavsim.plants.hangar import find_aircraft
+from uavsim.plants.plant import Commands
 from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 
@@ -54,9 +55,6 @@ SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the s
 WING_OUT = 0.99
 
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
-Commands = tuple[float, float, float, float, float]
-"""Wing (0 folded, 1 out), throttle (0 … 1), pitch and roll, rad, stabiliser engaged (0, 1)."""
-
 Row = tuple[float, ...]
 Array = NDArray[np.float64]
 

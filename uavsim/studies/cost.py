@@ -16,7 +16,9 @@ from statistics import median
 from time import perf_counter
 
 from uavsim.cosim import Cosimulation, draw, plant_settings
-from uavsim.plants.jsbsim import Commands, JsbsimPlant
+from uavsim.plants.jsbsim import JsbsimPlant
+from uavsim.plants.plant import Commands
+from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import Scenario
 
 CHUNK = 500  # plant steps
@@ -53,8 +55,11 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
     Raises
     ------
     ValueError
+        If it is a rig, which JSBSim does not fly.
         If the flight ends before its time; its last chunks would not compare.
     """
+    if scenario.plant.kind != AIRCRAFT:
+        raise ValueError(f"{scenario.name}: plant.kind = {scenario.plant.kind!r}: only flights in JSBSim have this cost")
     leader = _TapedPlant(scenario)
     loop = Cosimulation(scenario, plant=leader)
     reference = JsbsimPlant(plant_settings(scenario, draw(scenario)))

@@ -18,7 +18,7 @@ FEW = 200  # values, below which each has its dot
 
 def draw(record: Record) -> "Figure | None":
     """Airspeed and its error, over the whole flight and around the launch."""
-    if not record.has("estimate"):
+    if not record.has("estimate") or not record.has_air:
         return None
     stretches = record.with_enlarged(record.launch)
     rows = (1.2, 1.0) if record.has("truth") else (1.0,)

@@ -27,6 +27,8 @@ def draw(record: Record) -> "Figure | None":
     """Specific force and the detector's windows around the launch."""
     if record.start is None or record.launch is None or not record.has("accelerometer"):
         return None
+    if record.plant == "centrifuge":  # its loads come over seconds
+        return None
     windows, origin = record.has("detector"), record.start
     heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else ())
     figure, axes = sheet(record.title, _words(record), heights, (1.5, 1.0), size=(11.5, 8.0))
@@ -83,14 +85,14 @@ def _force(column: "Sequence[Axes]", record: Record, stretch: Stretch, origin: f
             t, f = record.within(stretch, "truth", f"f{axis}")
             x, g = 1e3 * (t - origin), f / STANDARD_GRAVITY
             column[row].plot(x, g, color=dark, linewidth=1.2, label=f"$f_{axis}$ true")
-    for name, level in _levels(record).items():
+    for name, level in levels(record).items():
         column[0].axhline(level, color=RED, linewidth=1.0, label=f"{name} = {level:.2f} g")
     column[0].axhline(CROSSING_G, color=GREY, linewidth=1.0, linestyle=":", label=f"crossing level {CROSSING_G:g} g")
     label(column[0], "specific force $f_x$, g")
     label(column[1], "$f_y$, $f_z$, g")
 
 
-def _levels(record: Record) -> dict[str, float]:
+def levels(record: Record) -> dict[str, float]:
     """Levels of the detector that its kind reads, in g."""
     settings = record.settings("detector")
     used = USES[settings["kind"]]

@@ -1,12 +1,13 @@
-"""One flight's plots: launch, pressure, airspeed, trajectory.
+"""One flight's plots: launch, pressure, airspeed, trajectory; of a centrifuge its run.
 
-What a recording lacks is left out. Equal flights give equal files, byte for byte, with equal versions of matplotlib.
+What a recording or a rig lacks is left out. Equal flights give equal files, byte for byte, with equal versions of
+matplotlib.
 """
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from uavsim.views import airspeed, launch, pressure, trajectory
+from uavsim.views import airspeed, centrifuge, launch, pressure, trajectory
 from uavsim.views.figure import save
 from uavsim.views.record import Record
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 FIGURES = {
     "launch": launch.draw,
+    "centrifuge": centrifuge.draw,
     "pressure": pressure.draw,
     "airspeed": airspeed.draw,
     "trajectory": trajectory.draw,
@@ -32,7 +34,8 @@ def save_plots(flight: "Flight", folder: Path) -> list[Path]:
     Returns
     -------
     list of Path
-        Those of `launch.png`, `pressure.png`, `airspeed.png` and `trajectory.png` for which there are data.
+        Those of `launch.png`, `centrifuge.png`, `pressure.png`, `airspeed.png` and `trajectory.png` for which there
+        are data.
     """
     folder.mkdir(parents=True, exist_ok=True)
     record = Record(flight)

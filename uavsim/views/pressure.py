@@ -22,7 +22,7 @@ Series = tuple[Array, Array]  # time, s, and pressure, Pa
 
 def draw(record: Record) -> "Figure | None":
     """Both pressures and their difference."""
-    if not record.has("air_data"):
+    if not record.has("air_data") or not record.has_air:
         return None
     judged = record.has("truth")
     reference = _reference(record)

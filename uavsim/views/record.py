@@ -62,6 +62,16 @@ class Record:
         return value
 
     @cached_property
+    def plant(self) -> str:
+        """Kind of the plant; nothing of a recording, which had none."""
+        return str(self.flight.scenario.get("plant", {}).get("kind", ""))
+
+    @cached_property
+    def has_air(self) -> bool:
+        """Tell whether there was an airspeed, as far as the truth knows."""
+        return not self.has("truth") or bool(np.isfinite(self.column("truth", "airspeed")).any())
+
+    @cached_property
     def title(self) -> str:
         """Scenario, seed and outcome."""
         name, outcome, expected = self.flight.scenario["name"], self.scored("outcome"), self.scored("expected")

@@ -13,6 +13,7 @@ from rich.console import Console, RenderableType
 from rich.markup import escape
 from rich.table import Table
 
+from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.views.notes import notes
 
 if TYPE_CHECKING:
@@ -83,8 +84,9 @@ def print_score(flight: "Flight") -> None:
         verdict += "; a requirement is not met"
     outcome = f"[bold {'green' if right else 'red'}]{score['outcome']}[/]"
     head = f"\n[bold]{escape(flight.scenario['name'])}[/bold], seed {score['seed']}: {outcome} ({verdict})\n"
-    _print(console, head, _launch_table(score), "", _airspeed_table(score["airspeed"]), "")
-    _print(console, _pressure_table(score["pressure"]), "")
+    _print(console, head, _launch_table(score), "")
+    if flight.scenario["plant"]["kind"] == AIRCRAFT or score["airspeed"]["samples"]:
+        _print(console, _airspeed_table(score["airspeed"]), "", _pressure_table(score["pressure"]), "")
     if score["requirements"]:
         _print(console, _requirements_table(score["requirements"]), "")
     for note in notes(flight):

@@ -8,7 +8,7 @@ more than those.
 from math import inf, isfinite, nan
 from typing import get_args
 
-from uavsim.onboard.launch.detector import GAP_PERIODS, ROUNDING, Axis, require
+from uavsim.onboard.launch.detector import GAP_PERIODS, ROUNDING, Axis, periods, require
 
 GRAVITY = 9.80665  # m/s², ISO 80000-3
 
@@ -97,6 +97,32 @@ class OneAxis:
 
     def _take(self, f: float, dt: float, late: bool) -> bool:
         """Take the force, m/s² (NaN: unknown), of a sample that stands for dt, s; `late`: after a gap."""
+        raise NotImplementedError
+
+
+class Counting(OneAxis):
+    """A detector whose windows are whole numbers of samples; what it does with one of them is a subclass's `_count`."""
+
+    __slots__ = ("_once",)
+
+    def __init__(self, rate: float, axis: Axis = "+x") -> None:
+        super().__init__(rate, axis)
+        self._once = 1.5 * self._period  # s; up to here a sample counts once
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        if dt > self._once and self._catch_up(f, dt, late):
+            return True
+        return self._count(f)
+
+    def _catch_up(self, f: float, dt: float, late: bool) -> bool:
+        """Count the sample for those that were lost before it; after a gap forget them instead."""
+        if late:
+            self._clear()
+            return False
+        return any(self._count(f) for _ in range(periods(dt, self._period) - 1))
+
+    def _count(self, f: float) -> bool:
+        """Count a sample of the force f, m/s² (NaN: unknown); True if it recognises."""
         raise NotImplementedError
 
 

@@ -12,45 +12,92 @@ are gates on attitude, heading and satellite speed, the filters of their estimat
 anew. Sources: the public firmware of each; ArduPilot's level is what its manual gives for throws and bungees.
 """
 
-from math import cos, isfinite, nan, pi, sin, sqrt
+from math import cos, inf, isfinite, nan, pi, sin, sqrt
 
 from uavsim.onboard.launch.axis import GRAVITY, OneAxis
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
 
 BLOCK = 0.5  # s, over which the force on the rail is averaged
+LOOP = 50.0  # Hz, at which PX4 runs its detector and ArduPlane its main loop
 
 
 class RailMean:
-    """Mean of the force over a block of time, of which the one before the last full one is used."""
+    """Mean of the force over a block of time, of which the one before the last full one is used.
 
-    __slots__ = ("_before", "_last", "_sum", "_time")
+    Attributes
+    ----------
+    before : float
+        That mean, m/s²; NaN as long as there is none.
+    """
+
+    __slots__ = ("_last", "_sum", "_time", "before")
 
     def __init__(self) -> None:
-        self._before = self._last = nan
+        self.before = self._last = nan
         self._sum = self._time = 0.0
 
-    def off(self, f: float, dt: float) -> float:
-        """Force less its mean, m/s²; NaN as long as there is none."""
-        if isfinite(f):
+    def add(self, f: float, dt: float) -> None:
+        """Take the force, m/s², of a sample that stands for dt, s; one that is not finite is left out."""
+        if -inf < f < inf:
             self._sum += f * dt
             self._time += dt
             if self._time * ROUNDING >= BLOCK:
-                self._before, self._last = self._last, self._sum / self._time
+                self.before, self._last = self._last, self._sum / self._time
                 self._sum = self._time = 0.0
-        return f - self._before
 
 
-class Px4(OneAxis):
+class Periodic(OneAxis):
+    """A rule that runs at a rate of its own, with the sample that is there; at every sample where those are fewer.
+
+    Parameters
+    ----------
+    rate : float
+        Samples a second, Hz.
+    run_rate : float
+        Runs a second, Hz.
+    axis : str
+        Signed body axis that points along the launch.
+    """
+
+    __slots__ = ("_elapsed", "_interval")
+
+    def __init__(self, rate: float, run_rate: float, axis: Axis) -> None:
+        super().__init__(rate, axis)
+        require(isfinite(run_rate) and run_rate > 0.0, "call_rate must be above 0 Hz")
+        self._interval = 1.0 / run_rate - 0.5 / rate  # s; half a sample of tolerance, so that jitter skips no run
+
+    def _clear(self) -> None:
+        self._elapsed = 0.0
+
+    def _take(self, f: float, dt: float, late: bool) -> bool:
+        self._watch(f, dt, late)
+        elapsed = self._elapsed + dt
+        if elapsed < self._interval:
+            self._elapsed = elapsed
+            return False
+        self._elapsed = 0.0
+        return self._run(f, elapsed)
+
+    def _watch(self, f: float, dt: float, late: bool) -> None:
+        """Take what a rule needs of every sample; begin anew after a gap (`late`)."""
+        raise NotImplementedError
+
+    def _run(self, f: float, elapsed: float) -> bool:
+        """Run with the force f, m/s², so long after the last run, s."""
+        raise NotImplementedError
+
+
+class Px4(Periodic):
     """PX4's launch detector on one body axis, as until March 2026.
 
     Parameters
     ----------
     rate : float
         Samples a second, Hz.
-    threshold : float
-        m/s², without gravity.
-    hold : float
-        Time above it that is exceeded, s.
+    acceleration : float
+        m/s², without gravity; FW_LAUN_AC_THLD.
+    time : float
+        Time above it that is exceeded, s; FW_LAUN_AC_T.
     axis : str
         Signed body axis that points along the launch.
 
@@ -61,50 +108,47 @@ class Px4(OneAxis):
 
     Notes
     -----
-    A run takes the sample that is there. A NaN force is not above.
+    A NaN force is not above.
     """
 
-    __slots__ = ("_elapsed", "_held", "_hold", "_interval", "_mean", "_threshold")
+    __slots__ = ("_acceleration", "_exceeded", "_held", "_mean")
 
-    def __init__(self, rate: float, *, threshold: float = 30.0, hold: float = 0.050, axis: Axis = "+x") -> None:
-        require(
-            isfinite(threshold) and isfinite(hold) and hold > 0.0, "threshold and hold must be finite, hold above 0"
-        )
-        require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
-        self._threshold, self._hold = threshold, hold * ROUNDING
-        self._interval = 0.020 - 0.5 / rate  # s; half a sample of tolerance, so that jitter skips no run
-        super().__init__(rate, axis)
+    def __init__(self, rate: float, *, acceleration: float = 30.0, time: float = 0.050, axis: Axis = "+x") -> None:
+        super().__init__(rate, LOOP, axis)
+        require(isfinite(acceleration), "acceleration must be finite")
+        require(isfinite(time) and time > 0.0, "time must be above 0 s")
+        self._acceleration, self._exceeded = acceleration, time * ROUNDING
 
     def _clear(self) -> None:
+        super()._clear()
         self._mean = RailMean()
-        self._elapsed = self._held = 0.0
+        self._held = 0.0
 
-    def _take(self, f: float, dt: float, late: bool) -> bool:
-        return self._run(self._mean.off(f, dt), dt, late)
-
-    def _run(self, a: float, dt: float, late: bool) -> bool:
+    def _watch(self, f: float, dt: float, late: bool) -> None:
+        self._mean.add(f, dt)
         if late:
             self._held = 0.0
-        self._elapsed += dt
-        if self._elapsed < self._interval:
-            return False
-        worth, self._elapsed = min(max(self._elapsed, 0.010), 0.050), 0.0
-        self._held = self._held + worth if a > self._threshold else 0.0
+
+    def _run(self, f: float, elapsed: float) -> bool:
+        return self._judge(f - self._mean.before, elapsed)
+
+    def _judge(self, a: float, elapsed: float) -> bool:
+        self._held = self._held + min(max(elapsed, 0.010), 0.050) if a > self._acceleration else 0.0
         self.triggered = self._held > 0.0
-        return self._held > self._hold
+        return self._held > self._exceeded
 
 
 class Px4Norm(Px4):
     """PX4's launch detector on the magnitude of the acceleration, as since March 2026; settings of `Px4`.
 
-    A force that is NaN along any axis is not above.
+    A sample that is NaN along any axis is not above, and is left out of the mean.
     """
 
-    __slots__ = ("_felt", "_means")
+    __slots__ = ("_blocks", "_felt")
 
     def _clear(self) -> None:
         super()._clear()
-        self._means = RailMean(), RailMean(), RailMean()
+        self._blocks = RailMean(), RailMean(), RailMean()
         self._felt = 0.0, 0.0, 0.0
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
@@ -112,22 +156,33 @@ class Px4Norm(Px4):
         self._felt = fx, fy, fz
         return super().step(t, fx, fy, fz)
 
-    def _take(self, f: float, dt: float, late: bool) -> bool:
-        x, y, z = (mean.off(felt, dt) for mean, felt in zip(self._means, self._felt, strict=True))
-        return self._run(sqrt(x * x + y * y + z * z), dt, late)
+    def _watch(self, f: float, dt: float, late: bool) -> None:
+        x, y, z = self._blocks
+        fx, fy, fz = self._felt
+        if -inf < fx + fy + fz < inf:
+            x.add(fx, dt)
+            y.add(fy, dt)
+            z.add(fz, dt)
+        if late:
+            self._held = 0.0
+
+    def _run(self, f: float, elapsed: float) -> bool:
+        x, y, z = (felt - block.before for felt, block in zip(self._felt, self._blocks, strict=True))
+        return self._judge(sqrt(x * x + y * y + z * z), elapsed)
 
 
-class ArduPilot(OneAxis):
+class ArduPilot(Periodic):
     """ArduPlane's check of the forward acceleration before an automatic take-off.
 
     Parameters
     ----------
     rate : float
         Samples a second, Hz.
-    threshold : float
-        m/s², without gravity, that the mean of five values at 50 Hz reaches. The firmware's own default is no test.
+    acceleration : float
+        m/s², without gravity, that the mean of five values at 50 Hz reaches; TKOFF_THR_MINACC, whose own default, 0, is
+        no test.
     delay : float
-        From then to the launch, s.
+        From then to the launch, s; TKOFF_THR_DELAY.
     axis : str
         Signed body axis that points along the launch.
 
@@ -141,39 +196,40 @@ class ArduPilot(OneAxis):
     A NaN force counts as no acceleration. A gap forgets the values and ends the delay.
     """
 
-    __slots__ = ("_delay", "_elapsed", "_interval", "_mean", "_threshold", "_values", "_waited")
+    __slots__ = ("_acceleration", "_delay", "_mean", "_values", "_waited")
 
-    def __init__(self, rate: float, *, threshold: float = 15.0, delay: float = 0.2, axis: Axis = "+x") -> None:
-        require(
-            isfinite(threshold) and isfinite(delay) and delay >= 0.0, "threshold and delay must be finite, delay ≥ 0"
-        )
-        require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
-        self._threshold, self._delay = threshold, delay / ROUNDING
-        self._interval = 0.020 - 0.5 / rate  # s, as of PX4
-        super().__init__(rate, axis)
+    def __init__(self, rate: float, *, acceleration: float = 15.0, delay: float = 0.2, axis: Axis = "+x") -> None:
+        super().__init__(rate, LOOP, axis)
+        require(isfinite(acceleration), "acceleration must be finite")
+        require(isfinite(delay) and delay >= 0.0, "delay must not be below 0 s")
+        self._acceleration, self._delay = acceleration, delay / ROUNDING
 
     def _clear(self) -> None:
         self._mean = RailMean()
         self._forget()
 
     def _forget(self) -> None:
+        super()._clear()
         self._values = (0.0,) * 5
-        self._elapsed = self._waited = 0.0
+        self._waited = 0.0
         self.triggered = False
 
     def _take(self, f: float, dt: float, late: bool) -> bool:
-        a = self._mean.off(f, dt)
+        if not self.triggered or late:
+            return super()._take(f, dt, late)
+        self._mean.add(f, dt)
+        self._waited += dt
+        return self._waited >= self._delay
+
+    def _watch(self, f: float, dt: float, late: bool) -> None:
+        self._mean.add(f, dt)
         if late:
             self._forget()
-        if self.triggered:
-            self._waited += dt
-            return self._waited >= self._delay
-        self._elapsed += dt
-        if self._elapsed < self._interval:
-            return False
-        self._elapsed = 0.0
+
+    def _run(self, f: float, elapsed: float) -> bool:
+        a = f - self._mean.before
         self._values = (*self._values[1:], a if a == a else 0.0)
-        self.triggered = sum(self._values) >= 5.0 * self._threshold
+        self.triggered = sum(self._values) >= 5.0 * self._acceleration
         return self.triggered and self._delay <= 0.0
 
 
@@ -184,12 +240,12 @@ class Inav(OneAxis):
     ----------
     rate : float
         Samples a second, Hz.
-    threshold : float
-        m/s², with gravity.
-    hold : float
-        Time above it, s.
+    acceleration : float
+        m/s², with gravity; nav_fw_launch_accel.
+    time : float
+        Time above it, s; nav_fw_launch_detect_time.
     cutoff : float
-        Of the low-pass, Hz; there is none where the rate is not above twice this.
+        Of the low-pass, Hz; there is none where the rate is not above twice this. acc_lpf_hz.
     axis : str
         Signed body axis that points along the launch.
 
@@ -203,23 +259,23 @@ class Inav(OneAxis):
     The low-pass begins at rest at the first force. One that is not finite is not above and passes the low-pass by.
     """
 
-    __slots__ = ("_a1", "_a2", "_b0", "_cutoff", "_held", "_hold", "_started", "_threshold", "_z1", "_z2")
+    __slots__ = ("_a1", "_a2", "_acceleration", "_b0", "_cutoff", "_held", "_needed", "_started", "_z1", "_z2")
 
     def __init__(
         self,
         rate: float,
         *,
-        threshold: float = 18.63,
-        hold: float = 0.040,
+        acceleration: float = 18.63,
+        time: float = 0.040,
         cutoff: float = 15.0,
         axis: Axis = "+x",
     ) -> None:
-        require(isfinite(threshold), "threshold must be finite")
-        require(all(isfinite(x) and x > 0.0 for x in (rate, hold, cutoff)), "rate, hold and cutoff must be above 0")
-        self._threshold, self._hold = threshold, hold / ROUNDING
+        super().__init__(rate, axis)
+        require(isfinite(acceleration), "acceleration must be finite")
+        require(all(isfinite(x) and x > 0.0 for x in (time, cutoff)), "time and cutoff must be above 0")
+        self._acceleration, self._needed = acceleration, time / ROUNDING
         self._b0, self._a1, self._a2 = lowpass(cutoff / rate) if rate > 2.0 * cutoff else (1.0, 0.0, 0.0)
         self._cutoff = rate > 2.0 * cutoff
-        super().__init__(rate, axis)
 
     def _clear(self) -> None:
         self._started = False
@@ -228,13 +284,13 @@ class Inav(OneAxis):
     def _take(self, f: float, dt: float, late: bool) -> bool:
         if late:
             self._clear()
-        if not isfinite(f) or not self._filtered(f) > self._threshold:
+        if not isfinite(f) or not self._filtered(f) > self._acceleration:
             self._held = 0.0
             self.triggered = False
             return False
         self._held += dt
         self.triggered = True
-        return self._held >= self._hold
+        return self._held >= self._needed
 
     def _filtered(self, f: float) -> float:
         if not self._cutoff:
@@ -249,15 +305,15 @@ class Inav(OneAxis):
         return out
 
 
-class Paparazzi(OneAxis):
+class Paparazzi(Periodic):
     """Paparazzi's catapult module.
 
     Parameters
     ----------
     rate : float
         Samples a second, Hz.
-    threshold : float
-        m/s², with gravity; reached is enough.
+    acceleration : float
+        m/s², with gravity; reached is enough. NAV_CATAPULT_ACCELERATION_THRESHOLD is in g.
     calls : int
         How many in a row.
     call_rate : float
@@ -280,40 +336,36 @@ class Paparazzi(OneAxis):
     A NaN force at a call is one below.
     """
 
-    __slots__ = ("_calls", "_elapsed", "_interval", "_threshold")
+    __slots__ = ("_acceleration", "_calls")
 
     def __init__(
         self,
         rate: float,
         *,
-        threshold: float = 1.5 * GRAVITY,
+        acceleration: float = 1.5 * GRAVITY,
         calls: int = 5,
         call_rate: float = 60.0,
         axis: Axis = "+x",
     ) -> None:
-        require(isfinite(threshold), "threshold must be finite")
+        super().__init__(rate, call_rate, axis)
+        require(isfinite(acceleration), "acceleration must be finite")
         require(calls == int(calls) >= 1, "calls must be a whole number, at least 1")
-        require(all(isfinite(x) and x > 0.0 for x in (rate, call_rate)), "rate and call_rate must be above 0")
-        self._threshold, self._calls = threshold, calls
-        self._interval = 1.0 / call_rate - 0.5 / rate
-        super().__init__(rate, axis)
+        self._acceleration, self._calls = acceleration, calls
 
     def _clear(self) -> None:
-        self._elapsed = 0.0
+        super()._clear()
         self._begin()
 
     def _begin(self) -> None:
         self.level = self.count = self.total = 0
         self.triggered = False
 
-    def _take(self, f: float, dt: float, late: bool) -> bool:
+    def _watch(self, f: float, dt: float, late: bool) -> None:
         if late:
             self._begin()
-        self._elapsed += dt
-        if self._elapsed < self._interval:
-            return False
-        self._elapsed = 0.0
-        if not f >= self._threshold:
+
+    def _run(self, f: float, elapsed: float) -> bool:
+        if not f >= self._acceleration:
             self._begin()
             return False
         self.level, self.count, self.total, self.triggered = 1, self.count + 1, self._calls, True
@@ -327,7 +379,7 @@ class AltOs(OneAxis):
     ----------
     rate : float
         Samples a second, Hz.
-    threshold : float
+    acceleration : float
         m/s², without gravity.
     speed : float
         m/s, the integral of the acceleration, which does not fall below 0.
@@ -349,25 +401,26 @@ class AltOs(OneAxis):
     A force that is not finite is left out. A gap sets the integral to 0.
     """
 
-    __slots__ = ("_mean", "_speed", "_threshold", "gained")
+    __slots__ = ("_acceleration", "_mean", "_speed", "gained")
 
-    def __init__(self, rate: float, *, threshold: float = 20.0, speed: float = 5.0, axis: Axis = "+x") -> None:
-        require(isfinite(threshold) and isfinite(speed), "threshold and speed must be finite")
-        self._threshold, self._speed = threshold, speed
+    def __init__(self, rate: float, *, acceleration: float = 20.0, speed: float = 5.0, axis: Axis = "+x") -> None:
         super().__init__(rate, axis)
+        require(isfinite(acceleration) and isfinite(speed), "acceleration and speed must be finite")
+        self._acceleration, self._speed = acceleration, speed
 
     def _clear(self) -> None:
         self._mean = RailMean()
         self.gained = 0.0
 
     def _take(self, f: float, dt: float, late: bool) -> bool:
-        a = self._mean.off(f, dt)
+        self._mean.add(f, dt)
+        a = f - self._mean.before
         if late:
             self.gained = 0.0
         if not isfinite(a):
             return False
         self.gained = max(0.0, self.gained + a * dt)
-        self.triggered = a > self._threshold
+        self.triggered = a > self._acceleration
         return self.triggered and self.gained > self._speed
 
 

@@ -9,18 +9,19 @@ f is the force along the launch axis and c the `reference`, m/s²; L a window's 
 short window sees a strong launch soon, a long one a weak launch at all; the clip bounds a shock's say. Source: Lorden,
 Ann. Math. Statist. 42 (1971) 1897; the clip is Huber's.
 
-Sums are kept in whole steps of 2⁻²⁰ m/s², so that adding and taking off leaves no rounding behind however long it runs.
+One running sum serves all windows: a window's is what it has grown by since that window began. It is kept in whole
+steps of 2⁻²⁰ m/s², so that nothing is rounded however long it runs; 64 bits last for years.
 """
 
 from math import isfinite, sqrt
 
-from uavsim.onboard.launch.axis import GRAVITY, OneAxis, whole
+from uavsim.onboard.launch.axis import GRAVITY, Counting, whole
 from uavsim.onboard.launch.detector import Axis, require
 
 SCALE = 2.0**20  # steps in 1 m/s²
 
 
-class GlrBank(OneAxis):
+class GlrBank(Counting):
     """Recognise a launch by the likelihood ratio of the best of some windows.
 
     Parameters
@@ -52,7 +53,8 @@ class GlrBank(OneAxis):
 
     Notes
     -----
-    Before the first sample, after a gap and where the force is NaN, samples count as ones that take off `fall`.
+    Before the first sample and before the end of a gap, and where the force is NaN, samples count as ones that take off
+    `fall`. A sample that follows lost ones counts for them too.
 
     Examples
     --------
@@ -61,7 +63,7 @@ class GlrBank(OneAxis):
     20
     """
 
-    __slots__ = ("_fall", "_k", "_longest_window", "_quiet", "_reference", "_ring", "_span", "_sums", "_windows")
+    __slots__ = ("_fall", "_k", "_longest_window", "_reference", "_ring", "_span", "_sum", "_windows")
 
     def __init__(
         self,
@@ -81,36 +83,27 @@ class GlrBank(OneAxis):
         self._reference, self._fall, self._span = reference, fall, rise + fall
         lengths = sorted({whole(window, rate, "windows") for window in windows})
         self._longest_window = lengths[-1]
-        self._windows = tuple((i, n, int(SCALE * (limit * sqrt(n * rate) + n * fall))) for i, n in enumerate(lengths))
+        self._windows = tuple((n, int(SCALE * (limit * sqrt(n * rate) + n * fall))) for n in lengths)
         super().__init__(rate, axis)
 
     def _clear(self) -> None:
-        self._ring = [0] * self._longest_window
-        self._sums = [0] * len(self._windows)
-        self._k = 0
-        self._quiet = self._longest_window  # samples since the last that took off less than `fall`
+        self._ring = [0] * self._longest_window  # the running sum after each of the last samples
+        self._sum = self._k = 0
         self.triggered = False
 
-    def _take(self, f: float, dt: float, late: bool) -> bool:
-        if late and self.triggered:
-            self._clear()
+    def _count(self, f: float) -> bool:
         above = f - self._reference + self._fall
-        if not above > 0.0:  # NaN too
-            if not self.triggered:
-                return False  # a ring of zeros need not turn
-            added = 0
-            self._quiet += 1
-        else:
-            added = int(SCALE * (above if above < self._span else self._span))
-            self._quiet = 0
-        ring, sums, k, reached = self._ring, self._sums, self._k, False
-        for i, n, limit in self._windows:
-            total = sums[i] + added - ring[k - n]
-            sums[i] = total
-            if total > limit:
-                reached = True
-        ring[k] = added
+        total, ring, k, reached = self._sum, self._ring, self._k, False
+        if above > 0.0:
+            total += int(SCALE * (above if above < self._span else self._span))
+            for n, limit in self._windows:
+                if total - ring[k - n] > limit:
+                    reached = True
+                    break
+        elif not self.triggered:  # NaN too
+            return False  # a ring whose sums are equal need not turn
+        self.triggered = total != ring[k]
+        self._sum = ring[k] = total
         k += 1
         self._k = 0 if k == self._longest_window else k
-        self.triggered = self._quiet < self._longest_window
         return reached

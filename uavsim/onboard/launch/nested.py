@@ -6,8 +6,10 @@ window, l = 1 … i (`levels`), the launch is recognised if
 
     N / (l·n) ≥ k₁          (`ratio`; compared in whole numbers, so that 0.8 of 10 is 8)
 
-If the last window fails, the next sample above G1 may open new ones. Source: the published method that this project
-tests (its multi-level time window and threshold), with G1 ≥ G2 and each signed body axis counted on its own.
+If the last window fails, the next sample above G1 may open new ones. Windows are times: where samples are lost, the
+next one stands for the periods since the last (`detector.periods`) and is counted that many times. Source: the
+published method that this project tests (its multi-level time window and threshold), with G1 ≥ G2 and each signed body
+axis counted on its own.
 
 Thresholding before counting makes the level depend on the noise: with k₁ = 0.8 the force must exceed G2 by 0.84 σ of
 white noise to be recognised half of the time. Shocks shorter than k₁·n samples, ring included, are not recognised
@@ -18,7 +20,7 @@ from fractions import Fraction
 from math import inf, isfinite
 from typing import Literal, get_args
 
-from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+from uavsim.onboard.launch.detector import Axis, periods, require
 
 
 class MultiLevelWindow:
@@ -39,9 +41,10 @@ class MultiLevelWindow:
         samples in which the magnitude along any axis exceeds.
     rearm : bool
         Whether an axis may trigger again after its last window failed; if not it is dead until `reset`.
-    max_gap : float, optional
-        Longest time between two samples of a window, s. A longer one abandons the window, and the sample after it is
-        looked at as if there had been none. None allows any gap.
+    period : float, optional
+        Time that a sample stands for, s. One that comes later, up to `GAP_PERIODS` of them, is counted once for each; a
+        longer gap abandons the windows, and the sample after it is looked at as if there had been none. None: every
+        sample counts once, whatever its time.
 
     Attributes
     ----------
@@ -72,8 +75,9 @@ class MultiLevelWindow:
         "_counters",
         "_idle",
         "_lower",
-        "_max_gap",
+        "_once",
         "_only_x",
+        "_period",
         "_recognised",
         "_t",
         "_upper_x",
@@ -94,21 +98,22 @@ class MultiLevelWindow:
         ratio: float,
         axes: tuple[Axis, ...] | Literal["any"] = ("+x",),
         rearm: bool = True,
-        max_gap: float | None = None,
+        period: float | None = None,
     ) -> None:
         require(isfinite(threshold) and isfinite(trigger), "trigger and threshold must be finite")
         require(trigger >= threshold, "trigger must not be below threshold")
         require(samples == int(samples) and levels == int(levels), "samples and levels must be whole numbers")
         require(samples >= 1 and levels >= 1, "samples and levels must be at least 1")
         require(0.0 < ratio <= 1.0, "ratio must be above 0 and at most 1")
-        require(max_gap is None or max_gap > 0.0, "max_gap must be above 0")
+        require(period is None or 0.0 < period < inf, "period must be above 0 s")
         if axes != "any":
             known = get_args(Axis)
             require(
                 len(axes) == len(set(axes)) > 0 and all(axis in known for axis in axes),
                 f'axes must be "any" or different ones of {", ".join(known)}',
             )
-        self._max_gap = inf if max_gap is None else max_gap * ROUNDING
+        self._period = inf if period is None else period
+        self._once = 1.5 * self._period  # s; up to here a sample counts once
         names: tuple[str, ...] = ("any",) if axes == "any" else axes
         self._counters = tuple(
             _Counter(
@@ -137,7 +142,8 @@ class MultiLevelWindow:
         self._t = -inf
         self._recognised = False
         self._idle = True
-        self._show(self._counters[0])
+        self.level = self.count = self.total = 0
+        self.triggered = False
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
         """Take one sample; True on the one at which the launch is recognised, then False until `reset`.
@@ -161,15 +167,26 @@ class MultiLevelWindow:
         return fx >= lower_x and lower_y <= fy <= y and lower_z <= fz <= z
 
     def _advance(self, t: float, force: tuple[float, float, float]) -> bool:
-        late = t - self._t > self._max_gap
+        dt = t - self._t
         self._t = t
         if self._recognised:
             return False
+        if dt > self._once and self._catch_up(dt, force):
+            return True
+        return self._count(force)
+
+    def _catch_up(self, dt: float, force: tuple[float, float, float]) -> bool:
+        """Count the sample for those that were lost before it; after a gap abandon the windows instead."""
+        missed = periods(dt, self._period) - 1
+        if missed < 0:
+            for counter in self._counters:
+                counter.abandon()
+        return any(self._count(force) for _ in range(missed))
+
+    def _count(self, force: tuple[float, float, float]) -> bool:
         busy = 0
         furthest = self._counters[0]
         for counter in self._counters:
-            if late:
-                counter.abandon()
             if counter.add(force):
                 self._recognised = True
                 furthest = counter
@@ -178,12 +195,9 @@ class MultiLevelWindow:
             if counter.total > furthest.total:
                 furthest = counter
         self._idle = busy == 0
-        self._show(furthest)
+        self.level, self.count, self.total = furthest.level, furthest.count, furthest.total
+        self.triggered = furthest.triggered
         return self._recognised
-
-    def _show(self, counter: "_Counter") -> None:
-        self.level, self.count, self.total = counter.level, counter.count, counter.total
-        self.triggered = counter.triggered
 
 
 class _Counter:

@@ -4,7 +4,8 @@
     opened by m such in a row:        the same, those m the first of the n               (`SequenceWindow`)
     the last n samples:               the same, tested at every sample                   (`SlidingWindow`)
 
-Shares are compared in whole numbers. Sources: "threshold + time window", "threshold + sequence + time window" and
+Shares are compared in whole numbers. Windows are times, as of the published method: a sample that follows lost ones
+counts for them. Sources: "threshold + time window", "threshold + sequence + time window" and
 "threshold + sliding time window", to which the published method compares itself. A sample that is NaN does not exceed;
 a gap abandons what was counted.
 """
@@ -12,8 +13,8 @@ a gap abandons what was counted.
 from fractions import Fraction
 from math import isfinite
 
-from uavsim.onboard.launch.axis import OneAxis, whole
-from uavsim.onboard.launch.detector import GAP_PERIODS, Axis, require
+from uavsim.onboard.launch.axis import Counting, whole
+from uavsim.onboard.launch.detector import Axis, require
 from uavsim.onboard.launch.nested import MultiLevelWindow
 
 
@@ -65,11 +66,11 @@ class ThresholdWindow(MultiLevelWindow):
             ratio=ratio,
             axes=(axis,),
             rearm=rearm,
-            max_gap=GAP_PERIODS / rate,
+            period=1.0 / rate,
         )
 
 
-class SlidingWindow(OneAxis):
+class SlidingWindow(Counting):
     """The last n samples, tested at every one.
 
     Parameters
@@ -118,15 +119,12 @@ class SlidingWindow(OneAxis):
         self.level = self.count = self.total = 0
         self.triggered = False
 
-    def _take(self, f: float, dt: float, late: bool) -> bool:
+    def _count(self, f: float) -> bool:
         above = f > self._threshold
         if not self.count:
             if not above:
                 return False  # a ring of zeros need not turn
             self.level, self.total, self.triggered = 1, self._samples, True
-        elif late:
-            self._clear()
-            return self._take(f, dt, False)
         ring, k = self._ring, self._next
         count = self.count + above - ring[k]
         ring[k] = above
@@ -138,7 +136,7 @@ class SlidingWindow(OneAxis):
         return count >= self._needed
 
 
-class SequenceWindow(OneAxis):
+class SequenceWindow(Counting):
     """One window, opened by some samples in a row above a trigger and tested at its end.
 
     Parameters
@@ -197,9 +195,7 @@ class SequenceWindow(OneAxis):
         self.level = self.count = self.total = 0
         self.triggered = False
 
-    def _take(self, f: float, dt: float, late: bool) -> bool:
-        if late:
-            self._clear()
+    def _count(self, f: float) -> bool:
         if self.triggered:
             self.total += 1
             self.count += f > self._threshold

@@ -1,0 +1,81 @@
+"""The command line: parses, calls, prints. No physics. A module a command; `common` is what they share."""
+
+import io
+import sys
+from typing import Annotated
+
+import typer
+
+from uavsim.cli.bench import bench
+from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, WrongInputError
+from uavsim.cli.fly import fly
+from uavsim.cli.paper import paper
+from uavsim.cli.replay import replay
+from uavsim.cli.roc import roc
+from uavsim.cli.scenarios import scenarios
+from uavsim.cli.sensors import sensors
+
+COMMANDS = (scenarios, fly, replay, sensors, bench, paper, roc)
+"""In the order of the help."""
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+for _command in COMMANDS:
+    app.command()(_command)
+
+# click's ClickException, wherever this typer keeps its click
+_UsageError: type[Exception] = typer.BadParameter.__mro__[2]
+
+
+@app.callback(invoke_without_command=True)
+def uavsim(
+    context: typer.Context, version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False
+) -> None:
+    """Fly a folding-wing UAV from catapult to cruise in JSBSim.
+
+    Launch detector and airspeed estimator are in the loop, everything is scored against the truth.
+
+    \b
+    Examples:
+      uavsim scenarios
+      uavsim fly catapult --seed 7
+      uavsim fly gusty --seeds 1-50 --out output/gusty-50
+      uavsim replay output/catapult-7
+      uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
+      uavsim sensors bmp390
+      uavsim bench
+      uavsim paper
+    """  # noqa: D301 (click reads \b: keep these lines)
+    if version:
+        from uavsim import __version__
+
+        typer.echo(f"uavsim {__version__}")
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+def main() -> None:
+    """Run the command line; every error of the user's is one line on standard error and status 2."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without Greek is no reason to fail
+    try:
+        status = app(standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except (typer.Abort, KeyboardInterrupt):
+        status = INTERRUPTED
+    except _UsageError as error:
+        status = _complain(error.format_message())  # type: ignore[attr-defined]  # the class is known at run time only
+    except (BrokenPipeError, SystemExit):  # the reader of our output left; click ends the program at that
+        from uavsim.views.terminal import mute
+
+        mute()
+        status = DONE
+    except (WrongInputError, OSError) as error:
+        status = _complain(str(error))
+    sys.exit(status if isinstance(status, int) else DONE)
+
+
+def _complain(message: str) -> int:
+    typer.echo("Error: " + " ".join(message.split()), err=True)
+    return WRONG_INPUT

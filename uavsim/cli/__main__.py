@@ -1,0 +1,5 @@
+"""`python -m uavsim.cli`."""
+
+from uavsim.cli import main
+
+main()

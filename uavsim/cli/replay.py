@@ -1,0 +1,95 @@
+"""`uavsim replay`: the onboard code over a flight's readings or somebody's log."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uavsim.cli.common import NoPlots, Out, Overwrite, folder, plotter, user_input
+
+
+def replay(
+    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="A flight's folder, or a log of any files.")],
+    *,
+    mapping: Annotated[
+        str | None, typer.Option("--map", metavar="OURS=THEIRS,...", help="A log's columns, as t=time,fx=-Ay*9.80665.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of the detector.")
+    ] = None,
+    out: Out = None,
+    no_plots: NoPlots = False,
+    overwrite: Overwrite = False,
+) -> None:
+    """Run the onboard code over a flight's readings or a log.
+
+    A flight's events and estimate.parquet come out byte for byte. A log is CSV, Parquet, PX4 ULog or ArduPilot
+    DataFlash: the launch detector runs over it, and what it finds is told by the log's own time.
+
+    Example: uavsim replay output/catapult-1 --out output/again
+
+    Example: uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az --set detector.kind=inav
+    """
+    if len(logs) == 1 and _is_flight(logs[0]):
+        if mapping is not None or settings:
+            option = "--map" if mapping is not None else "--set"
+            raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
+        _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite)
+    else:
+        _replay_log(logs, mapping, settings or [], out, plots=not no_plots, overwrite=overwrite)
+
+
+def _is_flight(path: Path) -> bool:
+    """Tell a flight's folder, which may not be there, from a log."""
+    return path.is_dir() or not (path.exists() or path.suffix)
+
+
+def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bool) -> None:
+    from uavsim.cosim import replay as replay_flight
+    from uavsim.flight import load
+    from uavsim.scenario import Scenario
+    from uavsim.views import terminal
+
+    name = f"{flight.resolve().name}-replay"
+    with user_input():
+        recorded = load(flight)
+        Scenario.from_dict(recorded.scenario, str(flight / "scenario.toml"))
+        missing = [table for table in ("accelerometer", "air_data", "truth") if table not in recorded.tables]
+        if missing:
+            raise ValueError(f"{flight} cannot be replayed: {missing[0]}.parquet is missing")
+    folder(out, name, overwrite=overwrite)
+    again = replay_flight(recorded)
+    target = folder(out, name, overwrite=overwrite)
+    written = again.save(target, overwrite=overwrite, extra=plotter(again) if plots else None)
+    terminal.print_score(again)
+    terminal.say(f"written to {written}")
+
+
+def _replay_log(
+    logs: list[Path], mapping: str | None, settings: list[str], out: Path | None, *, plots: bool, overwrite: bool
+) -> None:
+    from uavsim.logs import read_log, replay_log
+    from uavsim.scenario import load_scenario
+    from uavsim.views import recording as view
+    from uavsim.views import terminal
+
+    other = [given for given in settings if not given.strip().startswith("detector.")]
+    if other:
+        raise typer.BadParameter(f"{other[0]!r}: of a log only detector.… can be set", param_hint="--set")
+    with user_input():
+        detector = load_scenario("catapult", overrides=settings).detector if settings else None
+        recording = read_log(logs, mapping)
+
+    def place() -> Path:
+        return folder(out, f"{logs[0].stem}-replay", overwrite=overwrite)
+
+    def draw(folder: Path) -> None:
+        view.save_plot(replayed, folder / "plots")
+
+    place()
+    with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
+        replayed = replay_log(recording, detector)
+    written = replayed.save(place(), overwrite=overwrite, extra=draw if plots else None)
+    for line in view.lines(replayed):
+        terminal.say(line)
+    terminal.say(f"written to {written}")

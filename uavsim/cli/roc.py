@@ -1,0 +1,131 @@
+"""`uavsim roc`: operating curves of launch detectors on the same signals."""
+
+from dataclasses import replace
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, folder, user_input
+
+if TYPE_CHECKING:
+    from uavsim.onboard.launch import DetectorSettings
+    from uavsim.scenario import Scenario
+    from uavsim.studies.trials import Launches
+
+SWEEP = 0.8  # of the progress bar; the rest is the comparison
+
+
+def roc(
+    *,
+    detectors: Annotated[str | None, typer.Option(metavar="A,B,...", help="Kinds of detector; all without it.")] = None,
+    hours: Annotated[
+        float, typer.Option(min=0.01, max=1e5, help="Of the disturbance mix; a quarter of others.")
+    ] = 20.0,
+    trials: Annotated[int, typer.Option(min=1, max=10_000_000, help="Launches.")] = 1000,
+    cells: Annotated[int, typer.Option(min=0, max=1_000_000, help="Launches in each cell of the comparison.")] = 200,
+    sigma: Annotated[float, typer.Option(min=0.0, max=20.0, help="Noise of the launches that are drawn, g.")] = 0.3,
+    scenario: Annotated[str | None, typer.Option(help="Launches and settings of a scenario, flown in JSBSim.")] = None,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Draws launches and disturbances.")] = 1,
+    workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
+    out: Out = None,
+    overwrite: Overwrite = False,
+    no_plots: NoPlots = False,
+) -> None:
+    """Draw launch detectors' operating curves.
+
+    How often each sees the launch, how late, and how often it cries wolf, at each level of its own, all of them on the
+    same signals; and the detectors as they are set in cells of peak, noise and bump.
+
+    Example: uavsim roc --out output/roc
+
+    Example: uavsim roc --detectors adaptive-cusum,px4 --hours 200 --trials 2000
+
+    Example: uavsim roc --scenario catapult --trials 200
+    """
+    from uavsim.onboard.launch import DetectorSettings
+    from uavsim.studies import operating
+    from uavsim.views import operating as view
+    from uavsim.views import operating_tables as tables
+    from uavsim.views import terminal
+
+    kinds = kinds_of(detectors)
+    base, launches, name = _launches(scenario, sigma)
+    settings = [replace(base, kind=kind) for kind in kinds]  # type: ignore[arg-type]
+
+    def place() -> Path:
+        return folder(out, f"roc-{seed}", overwrite=overwrite)
+
+    place()  # before anything is computed in vain
+    with Bar("trying launch detectors") as bar, user_input():
+        found = operating.operate(
+            settings,
+            launches,
+            hours=hours,
+            trials=trials,
+            seed=seed,
+            name=name,
+            workers=workers,
+            progress=lambda share: bar.show((SWEEP if cells else 1.0) * share),
+        )
+        table = None
+        if cells:
+            table = operating.compare(
+                _with_default(settings, base),
+                trials=cells,
+                seed=seed,
+                workers=workers,
+                progress=lambda share: bar.show(SWEEP + (1.0 - SWEEP) * share),
+            )
+    written = place()
+    view.save(found, table, written, overwrite=overwrite, plots=not no_plots)
+    tables.print_operating(found)
+    if table is not None:
+        tables.print_cells(table, DetectorSettings().kind)
+    terminal.say(f"written to {written}")
+
+
+def kinds_of(text: str | None) -> list[str]:
+    """Kinds of detector from `A,B`; all of them without it."""
+    from uavsim.studies.operating import KINDS
+
+    if text is None:
+        return list(KINDS)
+    kinds = [part.strip() for part in text.split(",")]
+    for kind in kinds:
+        if kind not in KINDS:
+            near = get_close_matches(kind, KINDS, n=1, cutoff=0.4)
+            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(KINDS)}"
+            raise typer.BadParameter(f"unknown detector {kind[:40]!r}; {hint}", param_hint="--detectors")
+    if len(set(kinds)) != len(kinds):
+        raise typer.BadParameter(f"{text[:60]!r} names a detector twice", param_hint="--detectors")
+    return kinds
+
+
+def _launches(source: str | None, sigma: float) -> "tuple[DetectorSettings, Launches, str]":
+    """Return settings to start from, where launches come from, and what they are called."""
+    from uavsim.onboard.launch import DetectorSettings
+    from uavsim.studies.signals import LaunchSettings
+    from uavsim.studies.trials import Drawn, Flown
+
+    if source is None:
+        return DetectorSettings(), Drawn(LaunchSettings(sigma_g=sigma)), f"launches of 5-15 g, σ {sigma:g} g"
+    scenario = load(source)
+    return scenario.detector, Flown(scenario), f"launches of {scenario.name}"
+
+
+def load(source: str) -> "Scenario":
+    """Read a scenario."""
+    from uavsim.scenario import load_scenario
+
+    with user_input():
+        return load_scenario(source)
+
+
+def _with_default(settings: "list[DetectorSettings]", base: "DetectorSettings") -> "list[DetectorSettings]":
+    """The detectors, and the shipped one to compare with."""
+    from uavsim.onboard.launch import DetectorSettings
+
+    own = DetectorSettings()
+    return settings if any(s.kind == own.kind for s in settings) else [*settings, own]

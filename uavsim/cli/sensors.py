@@ -1,0 +1,76 @@
+"""`uavsim sensors`: the presets, and one of them on a bench."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, folder, user_input
+
+
+def sensors(
+    name: Annotated[
+        str | None, typer.Argument(help="A preset or your own TOML file; without it all are listed.")
+    ] = None,
+    *,
+    hours: Annotated[float, typer.Option(help="Length of the simulated record, h.")] = 3.0,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Draws the unit and its noise.")] = 1,
+    unit: Annotated[str, typer.Option(help="Which unit: random, typical or ideal.")] = "random",
+    range_g: Annotated[float | None, typer.Option("--range-g", help="An accelerometer's range, g.")] = None,
+    rate: Annotated[float | None, typer.Option(help="An accelerometer's output rate, Hz.")] = None,
+    low_pass: Annotated[str | None, typer.Option("--filter", help="An accelerometer's low-pass.")] = None,
+    mode: Annotated[str | None, typer.Option(help="A pressure sensor's oversampling.")] = None,
+    iir: Annotated[int | None, typer.Option(help="A pressure sensor's filter coefficient.")] = None,
+    noise_scale: Annotated[float, typer.Option(help="Factor on the white noise.")] = 1.0,
+    compare: Annotated[Path | None, typer.Option(help="Your bench log, CSV, SI: t and fx,fy,fz or pressure.")] = None,
+    mapping: Annotated[
+        str | None, typer.Option("--map", metavar="OURS=THEIRS,...", help="Your columns, as t=time,fx=ax*9.80665.")
+    ] = None,
+    out: Out = None,
+    overwrite: Overwrite = False,
+    no_plots: NoPlots = False,
+) -> None:
+    """List the sensor presets, or put one on a bench.
+
+    Prints a part with its sources, simulates hours of it at rest, and draws Allan deviation, density and histogram over
+    what the datasheet promises, with your own bench log beside it.
+
+    Example: uavsim sensors bmp390
+
+    Example: uavsim sensors adxl345 --hours 1 --compare log.csv --map t=time,fx=ax,fy=ay,fz=az
+    """
+    from uavsim.views import datasheets, terminal
+
+    if name is None:
+        if compare is not None:
+            raise typer.BadParameter(
+                "name the part to compare with, as in uavsim sensors bmp390", param_hint="--compare"
+            )
+        datasheets.print_presets()
+        return
+    from sensors.bench import UNITS, on_bench
+    from sensors.choice import choose
+    from uavsim.studies.bench import check_hours, put_on_bench, read_log
+    from uavsim.views.characterisation import save_bench
+
+    if mapping is not None and compare is None:
+        raise typer.BadParameter("names columns of a log: give --compare, too", param_hint="--map")
+    with user_input():
+        part = on_bench(name, range_g=range_g, rate=rate, filter=low_pass, mode=mode, iir=iir, noise_scale=noise_scale)
+        which = UNITS[UNITS.index(choose("--unit", unit, UNITS))]
+    with user_input("--hours: "):
+        check_hours(part, hours)
+    with user_input("--compare: "):
+        log = None if compare is None else read_log(compare, part, mapping)
+
+    def place() -> Path:
+        return folder(out, f"sensors-{part.name}", overwrite=overwrite)
+
+    place()
+    datasheets.print_preset(name)
+    with Bar(f"simulating {hours:g} h") as bar:
+        measured = put_on_bench(part, hours=hours, seed=seed, unit=which, log=log, progress=bar.show)
+    written = place()
+    save_bench(measured, written, overwrite=overwrite, plots=not no_plots)
+    datasheets.print_bench(measured)
+    terminal.say(f"written to {written}")

@@ -1,0 +1,220 @@
+"""A log's tables turned into one recording: which column is which, in what unit, and files joined on time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sensors.bench_log import Source, listed, numbers, parse_map, resolved
+from uavsim.logs.formats import Mapped, Table, named, read_tables
+from uavsim.logs.recording import AXES, COLUMNS, GAP, Array, Recording
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SLOWEST, FASTEST = 10.0, 20_000.0  # Hz, median rates that are understood
+FEWEST = 10  # readings
+LOOKS_LIKE_G = (0.7, 1.4)  # median of |f|: at rest and in level flight it is 1 in g and 9.8 in m/s²
+TOO_MUCH = 400.0  # m/s², median of |f|: no flight feels 40 g for most of the time, counts and mg read so
+UNEQUAL = 1.2  # ratio of the axes' factors above which their units are mixed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """Columns of ours from one table: t, and what it has of fx, fy, fz, each with the factor that the map gives."""
+
+    name: str
+    t: Array
+    force: dict[str, Array]
+    factors: dict[str, float | None]
+
+
+def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
+    """Read a log of one file or several.
+
+    Files that hold all axes follow each other; axes of different files (or messages) are brought to the times of the
+    one with fx by straight lines. Rows without a time, and those whose time is that of the row before, are left out.
+
+    Parameters
+    ----------
+    paths
+        CSV, Parquet, ULog (needs pyulog) or DataFlash (needs pymavlink); told apart by what they hold.
+    mapping
+        ``ours=theirs,…``, as in ``t=time,fx=-Ay,fy=ax*9.80665,fz=imu[0].z``; of ULog and DataFlash theirs is
+        ``message.field`` or ``message[instance].field``. Without, columns are t, fx, fy, fz; ULog and DataFlash have
+        defaults of their own, and their time in seconds.
+
+    Raises
+    ------
+    ValueError
+        One line that names the file, what was found and what to map.
+    """
+    sources = {} if mapping is None else parse_map(mapping, COLUMNS)
+    tables = [table for path in paths for table in read_tables(path, sources)]
+    remarks = [f"{table.name}: {said}" for table in tables for said in table.remarks]
+    pieces = []
+    for table in tables:
+        with named(table.name):
+            piece = _piece(table, sources, alone=len(tables) == 1, remarks=remarks)
+        if piece is None:
+            remarks.append(f"{table.name} holds none of {', '.join(AXES)} with a time and is left out")
+        else:
+            pieces.append(piece)
+    names = tuple(path.name for path in paths)
+    with named(", ".join(map(str, paths))):
+        missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
+        if missing:
+            raise ValueError(_lacks(missing, [str(name) for table in tables for name in table.frame.columns]))
+        factors = {axis: factor for piece in pieces for axis, factor in piece.factors.items()}
+        _check_factors(factors)
+        readings = _merged(pieces)
+        recording = Recording(names, mapping or "", readings, (*remarks, *_remarks(readings)))
+        _check_rate(recording)
+        if not any(factors.values()):  # else somebody has thought of units
+            _check_unit(readings[:, 1:])
+    return recording
+
+
+def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) -> Piece | None:
+    """Take ours out of a table; None if it has none of the axes, or no time."""
+    found = list(map(str, table.frame.columns))
+    wanted = {name: resolved(sources.get(name, table.usual.get(name, Source(name))), found) for name in COLUMNS}
+    held = {name: source for name, source in wanted.items() if source.column in found}
+    missing = [name for name in COLUMNS if name not in held]
+    if "t" in missing and held and not alone:
+        missing = ["t"]  # what it lacks besides may be in another file
+    if missing and (alone or missing == ["t"]):
+        named = [sources[name].column for name in missing if name in sources]
+        raise ValueError(_lacks(missing, found, named))
+    if "t" in missing or len(held) == 1:
+        return None
+    values = {name: _values(table.frame, source) for name, source in held.items()}
+    t = values.pop("t")
+    timed = np.isfinite(t)
+    back = np.flatnonzero(np.diff(t[timed]) < 0.0)
+    if back.size:
+        before, after = t[timed][back[0]], t[timed][back[0] + 1]
+        raise ValueError(
+            f"time runs backwards: {after:.10g} s comes after {before:.10g} s (row {back[0] + 2}); map t=… to a column "
+            f"that rises, of {listed(found)}"
+        )
+    stated = {axis: "*" in sources[axis].column[len(held[axis].column) :] for axis in values if axis in sources}
+    factors = {axis: held[axis].factor if stated.get(axis) else None for axis in values}
+    keep = np.flatnonzero(timed)
+    keep = keep[np.concatenate(([True], np.diff(t[keep]) > 0.0))] if keep.size else keep
+    if not timed.all():
+        remarks.append(f"{table.name}: {np.count_nonzero(~timed)} rows have no time and are left out")
+    if keep.size < np.count_nonzero(timed):
+        remarks.append(f"{table.name}: {np.count_nonzero(timed) - keep.size} rows have the time of the row before")
+    force = {name: column[keep] for name, column in values.items()}
+    if len(force) == len(AXES) and not any(factors.values()):
+        _check_unit(np.column_stack([force[axis] for axis in AXES]))
+    return Piece(table.name, t[keep], force, factors)
+
+
+def _values(table: "pd.DataFrame", source: Source) -> Array:
+    """Return a column as floats; dates are seconds since 1970."""
+    if table[source.column].dtype.kind == "M":
+        stamps = table[source.column].to_numpy(dtype="datetime64[ns]")
+        seconds = stamps.astype("int64") * 1e-9
+        return np.where(np.isnat(stamps), np.nan, seconds) * source.factor
+    values = np.array(numbers(table, source), dtype=float)
+    values[~np.isfinite(values)] = np.nan
+    return values
+
+
+def _lacks(missing: Sequence[str], found: Sequence[str], named: Sequence[str] = ()) -> str:
+    what = f"has no column {', '.join(map(repr, named))}" if named else f"lacks {', '.join(missing)}"
+    return f"{what}; it has {listed(found)}; say which is which with --map {','.join(f'{n}=…' for n in missing)}"
+
+
+# -- joining ---------------------------------------------------------------------------------------------------------
+
+
+def _merged(pieces: list[Piece]) -> Array:
+    """Join pieces: those of the same axes one after the other, different axes at the times of fx."""
+    groups: dict[tuple[str, ...], list[Piece]] = {}
+    for piece in pieces:
+        groups.setdefault(tuple(piece.force), []).append(piece)
+    joined = [_in_a_row(group) for group in groups.values()]
+    for axis in AXES:
+        holding = [piece.name for piece in joined if axis in piece.force]
+        if len(holding) > 1:
+            raise ValueError(f"{axis} is found twice, in {holding[0]} and in {holding[1]}: say which with --map")
+    base = next(piece for piece in joined if "fx" in piece.force)
+    force = dict(base.force)
+    for piece in joined:
+        if piece is not base:
+            if piece.t[-1] < base.t[0] or piece.t[0] > base.t[-1]:
+                raise ValueError(f"{base.name} and {piece.name} share no time: map t=… to the same clock")
+            force |= {axis: _brought(values, piece.t, base.t) for axis, values in piece.force.items()}
+    return np.column_stack([base.t, *(force[axis] for axis in AXES)])
+
+
+def _in_a_row(pieces: list[Piece]) -> Piece:
+    ordered = sorted((piece for piece in pieces if piece.t.size), key=lambda piece: float(piece.t[0]))
+    if not ordered:
+        raise ValueError("no row has a time: map t=…")
+    for one, other in pairwise(ordered):
+        if other.t[0] <= one.t[-1]:
+            raise ValueError(
+                f"{other.name} begins at {other.t[0]:.10g} s, before {one.name} ends at {one.t[-1]:.10g} s: two files "
+                "with the same axes must follow each other"
+            )
+    force = {axis: np.concatenate([piece.force[axis] for piece in ordered]) for axis in ordered[0].force}
+    return Piece(", ".join(p.name for p in ordered), np.concatenate([piece.t for piece in ordered]), force, {})
+
+
+def _brought(values: Array, t: Array, to: Array) -> Array:
+    """Straight lines between readings, NaN where there are none: outside, and in gaps."""
+    brought = np.interp(to, t, values, left=np.nan, right=np.nan)
+    if t.size > 1:
+        step = np.diff(t)
+        place = np.clip(np.searchsorted(t, to) - 1, 0, step.size - 1)
+        brought[(step[place] > GAP * np.median(step)) & ~np.isin(to, t)] = np.nan
+    return brought
+
+
+def _check_factors(factors: Mapping[str, float | None]) -> None:
+    """Refuse axes of different units."""
+    sizes = {axis: abs(1.0 if factor is None else factor) for axis, factor in factors.items()}
+    if max(sizes.values()) > UNEQUAL * min(sizes.values()):
+        told = ", ".join(f"{axis} by {size:g}" for axis, size in sizes.items())
+        raise ValueError(f"the map mixes units, scaling {told}: map all axes with the same factor")
+
+
+def _check_rate(recording: Recording) -> None:
+    """Refuse too few readings, and times that are no seconds."""
+    if len(recording.readings) < FEWEST:
+        raise ValueError(f"{len(recording.readings)} rows with a time are too few; at least {FEWEST} are needed")
+    if not SLOWEST <= recording.rate <= FASTEST:
+        raise ValueError(
+            f"{recording.rate:.3g} readings a second, if t is in seconds; from {SLOWEST:g} to {FASTEST:g} are "
+            "understood: map t=…*1e-6 if it is in microseconds, t=…*1e-3 if in milliseconds"
+        )
+
+
+def _check_unit(force: Array) -> None:
+    """Refuse what looks like another unit than m/s²."""
+    sizes = np.linalg.norm(force, axis=1)
+    if not np.isfinite(sizes).any():
+        raise ValueError(f"no row holds numbers for all of {', '.join(AXES)}: map columns that do")
+    middle = float(np.nanmedian(sizes))
+    if LOOKS_LIKE_G[0] <= middle <= LOOKS_LIKE_G[1]:
+        raise ValueError(
+            f"the median of |f| is {middle:.3g}, which looks like g and not m/s²: map fx=…*9.80665 and so on (…*1 if "
+            "it is m/s² all the same)"
+        )
+    if middle > TOO_MUCH:
+        raise ValueError(
+            f"the median of |f| is {middle:.4g}, which looks like mg or counts and not m/s²: map fx=…*factor and so on"
+        )
+
+
+def _remarks(readings: Array) -> list[str]:
+    """Say how many readings lack a number."""
+    lacking = int(np.count_nonzero(~np.isfinite(readings[:, 1:]).all(axis=1)))
+    return [f"{lacking} readings lack an axis: the detector passes over them"] if lacking else []

@@ -1,0 +1,125 @@
+"""The launch detector run over a recording, from its first reading to its last."""
+
+from array import array
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uavsim import __version__
+from uavsim.flight import Flight, frame
+from uavsim.logs.recording import Array, Recording
+from uavsim.onboard import launch
+
+PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
+
+_AIRSPEED = ("rmse", "rmse_raw", "reduction_percent", "bias", "max_error", "nees_mean", "coverage_95", "valid_fraction")
+_PRESSURE = ("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean")
+_FLIGHT = (
+    *("rail_exit_time", "rail_exit_speed", "wing_start_time", "wing_out_time"),
+    *("cruise_airspeed", "cruise_airspeed_sd", "rail_exit_altitude", "lowest_altitude_after_exit"),
+)
+
+
+def replay_log(recording: Recording, settings: launch.DetectorSettings | None = None) -> Flight:
+    """Run the launch detector over a recording.
+
+    After a detection the detector is left alone for `PAUSE`, then reset: later ones are found, too, and a force that
+    lasts longer than that is found again.
+
+    Parameters
+    ----------
+    recording
+        Readings.
+    settings
+        Of the detector; without, it is that of the packaged scenarios.
+
+    Returns
+    -------
+    Flight
+        Tables 'accelerometer' and 'detector' (every reading); an event ``launch_detected`` a detection; a score with
+        ``launch.detected_time`` (the first), null for what needs the truth, and ``recording``: files, rate, gaps,
+        clipping, all detections. Its ``scenario`` says what was replayed, and does not fly.
+    """
+    rate = recording.rate
+    detector = launch.default(rate=rate) if settings is None else launch.build(settings, rate)
+    columns, detections = _watch(detector, recording.readings)
+    t, fx, fy, fz = recording.readings.T
+    tables = {
+        "accelerometer": frame("accelerometer", {"t": t, "fx": fx, "fy": fy, "fz": fz}),
+        "detector": frame("detector", {"t": t, **columns}),
+    }
+    events = [{"t": when, "event": "launch_detected"} for when in detections]
+    used = launch.DetectorSettings() if settings is None else settings
+    about: dict[str, Any] = {
+        "name": recording.files[0],
+        "recording": {"files": list(recording.files), "map": recording.mapping, "rate": rate},
+        "detector": asdict(used),
+    }
+    return Flight(about, tables, events, _score(recording, used.kind, detections))
+
+
+def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], list[float]]:
+    """Return the detector's state at each reading, and when it recognised a launch."""
+    level, count, total = array("q"), array("q"), array("q")
+    triggered, recognised = array("b"), array("b")
+    detections: list[float] = []
+    resume = np.inf
+    step = detector.step
+    for t, fx, fy, fz in readings.tolist():
+        if t >= resume:
+            detector.reset()
+            resume = np.inf
+        seen = step(t, fx, fy, fz)
+        if seen:
+            detections.append(t)
+            resume = t + PAUSE
+        level.append(detector.level)
+        count.append(detector.count)
+        total.append(detector.total)
+        triggered.append(detector.triggered)
+        recognised.append(seen)
+    whole = {name: np.array(values) for name, values in (("level", level), ("count", count), ("total", total))}
+    flags = {name: np.array(v, dtype=bool) for name, v in (("triggered", triggered), ("recognised", recognised))}
+    return {**whole, **flags}, detections
+
+
+def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str, Any]:
+    start, end = recording.span
+    nothing = dict.fromkeys((*_AIRSPEED, "samples"))
+    return {
+        "outcome": None,
+        "expected": None,
+        "seed": None,
+        "versions": {"uavsim": __version__, "numpy": version("numpy")},
+        "launch": {
+            "release_time": None,
+            "true_time": None,
+            "crossing_time": None,
+            "detected_time": detections[0] if detections else None,
+            "latency": None,
+            "latency_from_crossing": None,
+            "detections": len(detections),
+            "false_detections": None,
+            "detector": kind,
+        },
+        "airspeed": {**nothing, **{phase: dict(nothing) for phase in ("stroke", "transition", "cruise")}},
+        "pressure": {name: dict.fromkeys(_PRESSURE) for name in ("total", "static")},
+        "flight": {**dict.fromkeys(_FLIGHT), "duration": end - start},
+        "requirements": [],
+        "recording": {
+            "files": list(recording.files),
+            "map": recording.mapping,
+            "start": start,
+            "end": end,
+            "readings": len(recording.readings),
+            "rate": recording.rate,
+            "gaps": [asdict(gap) for gap in recording.gaps()],
+            "clipping": [asdict(clipped) for clipped in recording.clipping()],
+            "detections": detections,
+            "pause": PAUSE,
+            "remarks": list(recording.remarks),
+        },
+    }

@@ -1,0 +1,95 @@
+"""What the loop asks of whatever the truth comes from.
+
+A plant steps at a fixed interval and keeps its own record, one row of truth a step (`uavsim.truth.UNITS`). What it
+does not have, as a centrifuge has no wing, is NaN there. Sensors read `force`, `air` and `flow`, and nothing else.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
+
+Vector = tuple[float, float, float]
+Commands = tuple[float, float, float, float, float]
+"""Wing (0 folded, 1 out), throttle (0 … 1), pitch and roll, rad, stabiliser engaged (0, 1)."""
+
+
+class Plant(Protocol):
+    """Where the truth comes from.
+
+    Attributes
+    ----------
+    k, t
+        Steps since the start of the record, and their time, s.
+    force
+        Specific force at the accelerometer after this step, body axes, m/s².
+    on_rail
+        Whether it is held by a launcher or a rig.
+    aloft
+        Whether it can go on: the altitude is a number and above the ground.
+    """
+
+    k: int
+    t: float
+    force: Vector
+    on_rail: bool
+    aloft: bool
+
+    @property
+    def finite(self) -> bool:
+        """Whether the whole state is finite."""
+
+    def step(self) -> None:
+        """Advance by one step and record it."""
+
+    def command(self, commands: Commands, /) -> None:
+        """Take the onboard computer's commands; they act from the next step on."""
+
+    def air(self, time: float, /) -> Vector:
+        """Total, static pressure, Pa, and temperature, K, at any recorded `time`, s, linear within a step."""
+
+    def flow(self) -> tuple[float, float, float, float, float, float, float]:
+        """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
+
+    def air_temperature(self) -> float:
+        """Temperature of the air after this step, K."""
+
+    def truth(self) -> dict[str, NDArray[np.float64]]:
+        """Columns of the truth, SI, one value a step, the first at time 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What every rig is told of the run: place and air, launcher, length, s, and what the seed has drawn.
+
+    Attributes
+    ----------
+    environment, launcher
+        Of the scenario.
+    duration
+        Of the record, s.
+    release_time
+        When the rig begins, s.
+    force_factor
+        This run's force over the nominal one.
+    random_seed
+        Of the rig's own noise.
+    step_rate
+        Hz.
+    """
+
+    environment: EnvironmentSettings
+    launcher: LauncherSettings
+    duration: float
+    release_time: float
+    force_factor: float = 1.0
+    random_seed: int = 1
+    step_rate: float = 1000.0
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Time of each row of the record, s."""
+        return np.arange(round(self.duration * self.step_rate) + 1) / self.step_rate

@@ -1,0 +1,244 @@
+"""Launches that detectors are tried on, and what counts as detecting one.
+
+A trial is a recording with one launch in it; a detector begins with it and its first alarm decides:
+
+    before the onset                       a false alarm; the launch is not detected, for the wing has opened by then
+    until 0.3 s after the stroke's end     a detection; its latency counts from the onset, and from the 4.5 g crossing
+    later, or never                        a miss
+
+`Drawn` draws from the distributions of `uavsim.studies.signals`. `Flown` flies a scenario: as long as nothing is
+commanded the truth does not depend on what the sensor reads, so one flight of JSBSim serves any number of sensors. It
+is exact, not an approximation: the plant is flown without a command, as before every detection.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import inf
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sensors import Accelerometer, Streams, Vibration
+from uavsim.cosim import STEP_RATE, draw, make_plant
+from uavsim.onboard.launch import DetectorSettings
+from uavsim.plants.rig_settings import AIRCRAFT
+from uavsim.scenario import Scenario
+from uavsim.score import Judged, launch_axis
+from uavsim.studies.detections import BatchDetector
+from uavsim.studies.signals import LaunchSettings, LaunchTruth, record_launches
+from uavsim.truth import STANDARD_GRAVITY as G0
+
+Array = NDArray[np.float64]
+
+WAIT = (1.5, 2.0)  # s before onset: rules that take the mean on the rail off see nothing in their first second
+GRACE = 0.3  # s after the stroke's end until which an alarm is a detection
+FLIGHTS = 4  # of JSBSim, which the sensors of `Flown` share
+NOISE = 1_000_000  # first index of the sensors' streams, apart from those of flights
+LONGEST = 2.0  # s after release until which a flight without a command is followed
+
+
+@dataclass(frozen=True, slots=True)
+class Trials:
+    """Recordings of launches.
+
+    Attributes
+    ----------
+    force
+        Of each trial, shape (n, 3), m/s².
+    start, rate
+        Of each trial: time of its first sample, s, and samples a second, Hz.
+    truths
+        Onset, crossing and end of each, s.
+    """
+
+    force: Sequence[Array]
+    start: Array
+    rate: Array
+    truths: tuple[LaunchTruth, ...]
+
+
+class Launches(Protocol):
+    """Where trials come from; trial i of a seed is the same whatever others are read."""
+
+    @property
+    def rate(self) -> float:
+        """Nominal samples a second, Hz."""
+
+    def read(self, seed: int, first: int, count: int) -> Trials:
+        """Return trials `first` … `first` + `count` - 1 of a seed."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Launches from distributions: a wait of 1.5 to 2 s, whatever the settings say, and `rate` Hz."""
+
+    settings: LaunchSettings = field(default_factory=LaunchSettings)
+    rate: float = 1000.0
+
+    def read(self, seed: int, first: int, count: int) -> Trials:
+        """Return some trials; see `Launches`."""
+        recorded = record_launches(replace(self.settings, wait=WAIT), seed, count, self.rate, first)
+        return Trials(list(recorded.f), np.zeros(count), np.full(count, self.rate), recorded.truths)
+
+
+@dataclass(frozen=True)
+class Flown:
+    """Launches of a scenario: few flights of JSBSim, each felt by any number of sensor units.
+
+    Every trial draws its own unit of the accelerometer, its noise, clock and vibration. Samples come at the unit's own
+    rate; jitter of the sampling instants is drawn, but detectors are told regular times.
+
+    Attributes
+    ----------
+    scenario
+        What is flown; a seed that is read takes the place of its own.
+    flights
+        How many flights a seed has; trial i is felt in flight i mod `flights`.
+    """
+
+    scenario: Scenario
+    flights: int = FLIGHTS
+
+    @property
+    def rate(self) -> float:
+        """Samples a second, Hz."""
+        return self.scenario.accelerometer.description().rate
+
+    @cached_property
+    def _known(self) -> "dict[tuple[int, int], _Flight]":
+        return {}
+
+    def fly(self, seed: int) -> None:
+        """Fly what a seed needs, so that reading is quick."""
+        for i in range(self.flights):
+            if (seed, i) not in self._known:
+                self._known[seed, i] = _fly(self.scenario.with_seed(seed), i)
+
+    def read(self, seed: int, first: int, count: int) -> Trials:
+        """Return some trials; see `Launches`.
+
+        Raises
+        ------
+        ValueError
+            If the catapult does not move the aircraft.
+        """
+        self.fly(seed)
+        felt = []
+        for i in range(first, first + count):
+            felt.append(_feel(self.scenario, self._known[seed, i % self.flights], Streams(seed, NOISE + i)))
+        force, start, rate, truths = zip(*felt, strict=True) if felt else ((), (), (), ())
+        return Trials(force, np.array(start, float), np.array(rate, float), tuple(truths))
+
+
+@dataclass(frozen=True)
+class _Flight:
+    """Truth of a flight without commands: force at each step, release, rail exit and judged times, s."""
+
+    force: tuple[tuple[float, float, float], ...]
+    first: int  # step of the first force
+    release: float
+    exit: float
+    push: float  # m/s²
+    truth: LaunchTruth
+
+
+def _fly(scenario: Scenario, index: int) -> _Flight:
+    drawn = draw(scenario, index)
+    plant = make_plant(scenario, drawn)
+    last = min(scenario.duration, drawn.release_time + LONGEST)
+    left, exit_time = plant.on_rail, inf
+    while plant.t < min(last, exit_time + GRACE) and plant.finite and plant.aloft:
+        plant.step()
+        if left and not plant.on_rail:
+            left, exit_time = False, plant.t
+    table = plant.truth()
+    judged = Judged(scenario.to_dict(), {"truth": table}, [], drawn.release_time, "", {})
+    onset = judged.true_time
+    if onset is None:
+        raise ValueError(f"{scenario.name}: the aircraft does not move within {LONGEST:g} s of its release")
+    axis = launch_axis(scenario.plant.kind, scenario.detector.axes)
+    force = np.column_stack([table[name] for name in ("fx", "fy", "fz")])
+    axial = force[:, "xyz".index(axis[1])] * (-1.0 if axis[0] == "-" else 1.0)
+    end = min(exit_time, float(judged.time[-1]))
+    first = max(0, round((drawn.release_time - WAIT[0]) * STEP_RATE))
+    nominal = scenario.launcher.peak_specific_force_g * G0 * drawn.force_factor
+    push = nominal if scenario.plant.kind == AIRCRAFT else 0.0
+    truth = LaunchTruth(onset, judged.crossing_time, float(axial.max()), end)
+    rows: tuple[tuple[float, float, float], ...] = tuple(map(tuple, force[first:].tolist()))
+    return _Flight(rows, first, drawn.release_time, exit_time, push, truth)
+
+
+def _feel(scenario: Scenario, flight: _Flight, streams: Streams) -> tuple[Array, float, float, LaunchTruth]:
+    """Let one unit feel a flight; return its readings, the time of the first, its rate, and the truth, s."""
+    settings, begin = scenario.accelerometer, flight.first / STEP_RATE
+    vibration = Vibration(
+        scenario.vibration,
+        streams,
+        dt=1.0 / STEP_RATE,
+        release_time=flight.release - begin,
+        plateau=flight.push,
+        rise=scenario.launcher.rise,
+        scale=settings.vibration_scale,
+    )
+    part = Accelerometer.from_settings(settings, streams, dt=1.0 / STEP_RATE, vibration=vibration)
+    readings: list[float] = []
+    exited, step, left = flight.exit - begin, part.step, False
+    for k, force in enumerate(flight.force):
+        t = k / STEP_RATE
+        for reading in step((t, force)):
+            readings.extend(reading)
+        if not left and t >= exited:
+            left = True
+            vibration.leave_rail(t + 1.0 / STEP_RATE)
+    table = np.array(readings).reshape(-1, 4)
+    actual = part.description.rate * (1.0 + part.rate_error)
+    return table[:, 1:], begin + float(table[0, 0]), actual, flight.truth
+
+
+@dataclass(frozen=True, slots=True)
+class Verdicts:
+    """What a detector made of some trials, each shape (trials,): latencies in s, NaN where there is none."""
+
+    early: NDArray[np.bool_]
+    since_onset: Array
+    since_crossing: Array
+
+    @property
+    def detected(self) -> NDArray[np.bool_]:
+        """Whether the launch was detected."""
+        return np.isfinite(self.since_onset)
+
+
+def judge(settings: DetectorSettings, trials: Trials, rate: float) -> Verdicts:
+    """Try a detector.
+
+    Parameters
+    ----------
+    settings
+        Of the detector.
+    trials
+        What it is tried on.
+    rate
+        Nominal samples a second for which it is built, Hz.
+
+    Raises
+    ------
+    ValueError
+        Settings that do not fit together.
+    """
+    found = BatchDetector(settings, rate).first(trials.force, trials.rate)
+    alarm = np.where(found >= 0, trials.start + found / trials.rate, inf)
+    onset = np.array([truth.onset for truth in trials.truths])
+    end = np.array([truth.end for truth in trials.truths])
+    crossing = np.array([np.nan if truth.crossing is None else truth.crossing for truth in trials.truths])
+    early = alarm < onset
+    seen = np.where(~early & (alarm <= end + GRACE), alarm, np.nan)
+    return Verdicts(early, seen - onset, seen - crossing)
+
+
+def join(parts: Sequence[Verdicts]) -> Verdicts:
+    """Put verdicts on several lots of trials together."""
+    names = ("early", "since_onset", "since_crossing")
+    return Verdicts(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))

@@ -1,0 +1,47 @@
+"""The paper beside ours: a folder with `results.json`, `figures/` and a page, and the same in the terminal."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from uavsim.flight import claim, unfinished, write_json
+from uavsim.views import terminal
+from uavsim.views.figure import save as save_figure
+from uavsim.views.paper.figures import FIGURES
+from uavsim.views.paper.page import heading, page
+
+if TYPE_CHECKING:
+    from uavsim.studies.paper import Reproduction
+
+__all__ = ["print_entries", "save"]
+
+
+def save(found: "Reproduction", target: Path, *, overwrite: bool = False) -> Path:
+    """Write the folder, whole or not at all.
+
+    Parameters
+    ----------
+    target
+        Made with its parents; an empty folder counts as none.
+    overwrite
+        Into a folder that is not empty: replace what was written there before; other files stay.
+
+    Raises
+    ------
+    OSError
+        If there is something already and `overwrite` is false (FileExistsError), or it cannot be written.
+    """
+    claim(target, overwrite=overwrite)
+    with unfinished(target) as folder:
+        (folder / "figures").mkdir()
+        files = {name: save_figure(draw(found), folder / "figures" / f"{name}.png") for name, draw in FIGURES.items()}
+        write_json(folder / "results.json", {name: entry.to_dict() for name, entry in found.entries.items()})
+        (folder / "index.html").write_text(page(found.entries, files), encoding="utf-8")
+    return target
+
+
+def print_entries(found: "Reproduction") -> None:
+    """Print a line a table: whether it agrees, and whether that is as documented."""
+    for name, entry in found.entries.items():
+        word = "agrees" if entry.agrees else "differs"
+        remark = "" if entry.as_documented else ", which is NOT as documented"
+        terminal.say(f"{heading(name):<12}{entry.title:<50}{word}{remark}")
