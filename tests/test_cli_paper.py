@@ -11,10 +11,11 @@ import pytest
 
 from uavsim import cli
 from uavsim.studies import paper
-from uavsim.studies.paper import Entry, Reproduction, centrifuge, complexity, recognition
+from uavsim.studies.paper import Entry, Reproduction, centrifuge, complexity, recognition, tunnel
 from uavsim.views.paper.page import page
 
-FILES = {"results.json", "index.html", *(f"figures/figure{n}.png" for n in (7, 8, 9, 17))}
+FIGURES = (*(f"figure{n}" for n in (7, 8, 9, 12, 17, 19, 20, 21)), "pipes")
+FILES = {"results.json", "index.html", *(f"figures/{name}.png" for name in FIGURES)}
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +28,7 @@ def found() -> Reproduction:
             (complexity, "FED", 200),
             (complexity, "REPEATS", 1),
             (centrifuge, "UNITS", 0),
+            (tunnel, "SEEDS", (1,)),
         ):
             patch.setattr(module, name, value)
         shares: list[float] = []
@@ -54,6 +56,10 @@ def test_the_folder(
         "table1": True,
         "table2": True,
         "table3": False,
+        "table5": True,
+        "table7": True,
+        "table8": False,
+        "pipe": False,
         "centrifuge": True,
     }
     assert all(row.keys() >= {"paper", "ours", "agrees", "tolerance", "note"} for row in results.values())
@@ -105,8 +111,8 @@ def read(entries: Mapping[str, Entry], figures: Mapping[str, Path]) -> tuple[str
 def test_the_page_needs_nothing_else_and_holds_every_table(found: Reproduction, tmp_path: Path) -> None:
     picture = tmp_path / "f.png"
     picture.write_bytes(b"\x89PNG")
-    text, reader = read(found.entries, {f"figure{n}": picture for n in (7, 8, 9, 17)})
-    assert sum(source.startswith("data:image/png;base64,") for source in reader.sources) == 4
+    text, reader = read(found.entries, dict.fromkeys(FIGURES, picture))
+    assert sum(source.startswith("data:image/png;base64,") for source in reader.sources) == len(FIGURES)
     assert all(source.startswith(("data:", "#")) for source in reader.sources)
     assert all(f'id="{name}"' in text for name in found.entries)
     assert "Not reproduced" in text

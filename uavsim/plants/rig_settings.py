@@ -5,7 +5,9 @@ from typing import Annotated, Literal
 
 from annotated_types import Interval
 
-PlantKind = Literal["jsbsim", "launch-curve", "centrifuge"]
+from uavsim.plants.wind_tunnel_settings import WindTunnelSettings
+
+PlantKind = Literal["jsbsim", "launch-curve", "centrifuge", "wind-tunnel"]
 AIRCRAFT: PlantKind = "jsbsim"
 
 
@@ -91,6 +93,7 @@ class PlantSettings:
     kind: PlantKind = AIRCRAFT
     launch_curve: LaunchCurveSettings = field(default_factory=LaunchCurveSettings)
     centrifuge: CentrifugeSettings = field(default_factory=CentrifugeSettings)
+    wind_tunnel: WindTunnelSettings = field(default_factory=WindTunnelSettings)
 
 
 def length(plant: PlantSettings) -> float:
@@ -100,4 +103,6 @@ def length(plant: PlantSettings) -> float:
     if plant.kind == "centrifuge":
         turning = plant.centrifuge
         return turning.spin_up + turning.hold + turning.spin_down
+    if plant.kind == "wind-tunnel":
+        return plant.wind_tunnel.length
     return 0.0

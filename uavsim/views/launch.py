@@ -27,7 +27,7 @@ def draw(record: Record) -> "Figure | None":
     """Specific force and the detector's windows around the launch."""
     if record.start is None or record.launch is None or not record.has("accelerometer"):
         return None
-    if record.plant == "centrifuge":  # its loads come over seconds
+    if record.plant in ("centrifuge", "wind-tunnel"):  # loads that come over seconds, or none
         return None
     windows, origin = record.has("detector"), record.start
     heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else ())

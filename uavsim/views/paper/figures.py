@@ -1,4 +1,4 @@
-"""The paper's figures 7, 8, 9 and 17, drawn from what was reproduced."""
+"""The paper's figures on launch detection, 7, 8, 9 and 17, drawn from what was reproduced."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -25,6 +25,7 @@ from uavsim.views.figure import (
     sheet,
 )
 from uavsim.views.launch import levels
+from uavsim.views.paper.airspeed import AIRSPEED_FIGURES
 from uavsim.views.record import Record
 
 if TYPE_CHECKING:
@@ -142,5 +143,6 @@ FIGURES: "dict[str, Callable[[Reproduction], Figure]]" = {
     "figure7": figure7,
     "figure8": figure8,
     "figure9": figure9,
+    **AIRSPEED_FIGURES,
     "figure17": figure17,
 }

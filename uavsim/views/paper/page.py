@@ -20,6 +20,10 @@ SHOWN: dict[str, tuple[str, ...]] = {  # figures below their tables
     "table1": ("figure7",),
     "table2": ("figure8",),
     "table3": ("figure9",),
+    "table5": ("figure12",),
+    "table7": ("figure19", "figure20"),
+    "table8": ("figure21",),
+    "pipe": ("pipes",),
     "centrifuge": ("figure17",),
 }
 
