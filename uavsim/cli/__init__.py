@@ -14,8 +14,9 @@ from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
+from uavsim.cli.survey import survey
 
-COMMANDS = (scenarios, fly, replay, sensors, bench, paper, roc)
+COMMANDS = (scenarios, fly, replay, sensors, bench, paper, roc, survey)
 """In the order of the help."""
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -44,6 +45,7 @@ def uavsim(
       uavsim sensors bmp390
       uavsim bench
       uavsim paper
+      uavsim survey fw8
     """  # noqa: D301 (click reads \b: keep these lines)
     if version:
         from uavsim import __version__

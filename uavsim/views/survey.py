@@ -2,7 +2,8 @@
 
 `survey.json` has all figures, `survey.csv` a row a place and role, `position_error.toml` is a scenario whose static
 port has the position error of the place that is named, `position_error.csv` the same as a table over Mach number, angle
-of attack and sideslip, `map.png` the places on the aircraft's outline. Written under another name and renamed when whole.
+of attack and sideslip, `map.png` the places on the aircraft's outline. Written under another name and renamed when it
+is whole.
 """
 
 import csv
@@ -243,9 +244,10 @@ def _dots(axes: "Axes", ranks: list[Rank], marker: str, size: float, norm: Any, 
 def _point_out(axes: "Axes", each: Rank, role: str, colour: str, *, side: bool) -> None:
     """Name a place that is chosen."""
     at = each.place.position[0], each.place.position[2 if side else 1]
-    up = 48.0 if role == "total" else 20.0 if side else -48.0
+    up = 52.0 if role == "total" else 24.0 if side else -48.0
+    right = -20.0 if side and role == "static" else 10.0
     axes.annotate(
-        f"{role}: {each.place.name}", at, xytext=(10.0, up), textcoords="offset points",
+        f"{role}: {each.place.name}", at, xytext=(right, up), textcoords="offset points",
         fontsize=SMALL, color=colour, arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8}, zorder=6,
     )  # fmt: skip
 

@@ -5,19 +5,23 @@
 airspeed error, and the published method's own case (`paper_case`).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from uavsim.airdata.surfaces import Polynomial
 from uavsim.studies.survey.edge import Source, choose_source, disagreement
-from uavsim.studies.survey.envelope import Envelope
+from uavsim.studies.survey.envelope import Envelope, envelope_of, fly_envelope, load_envelope, model_of
 from uavsim.studies.survey.flow import MACHS, AircraftFlow, reynolds
 from uavsim.studies.survey.geometry import Outline, read_outline
 from uavsim.studies.survey.paper_case import paper_case
 from uavsim.studies.survey.places import CHORDS, Place, places
 from uavsim.studies.survey.ranking import Rank, box, choose, probe_polynomial, ranked
 
-__all__ = ["Survey", "box", "choose", "read_outline", "survey"]
+__all__ = [
+    "Envelope", "Survey", "box", "check_envelope", "choose", "choose_source", "envelope_of", "fly_envelope",
+    "load_envelope", "model_of", "read_outline", "survey",
+]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +61,20 @@ class Survey:
     cross_check: dict[float, float] | None
 
 
-def survey(outline: Outline, envelope: Envelope, source: Source = "auto") -> Survey:
+def check_envelope(envelope: Envelope) -> None:
+    """Refuse flights faster than the rules for compressibility hold; ValueError."""
+    fastest = envelope.range("mach")[1]
+    if fastest > MACHS[-1]:
+        raise ValueError(f"the flights reach Mach {fastest:.2f}; the survey ends at {MACHS[-1]}")
+
+
+def survey(
+    outline: Outline,
+    envelope: Envelope,
+    source: Source = "auto",
+    *,
+    progress: Callable[[float], None] | None = None,
+) -> Survey:
     """Survey an aircraft.
 
     Parameters
@@ -68,24 +85,27 @@ def survey(outline: Outline, envelope: Envelope, source: Source = "auto") -> Sur
         Where its flights have been.
     source : {"auto", "neuralfoil", "panels"}
         What gives the speed along sections; auto takes NeuralFoil if it is installed.
+    progress : function, optional
+        Called with the share that is done, 0 … 1.
 
     Raises
     ------
     ValueError
         NeuralFoil is asked for and not installed, or the envelope is faster than the rules for compressibility hold.
     """
+    tell = progress or (lambda share: None)
     chosen = choose_source(source)
-    fastest = envelope.range("mach")[1]
-    if fastest > MACHS[-1]:
-        raise ValueError(f"the flights reach Mach {fastest:.2f}; the survey ends at {MACHS[-1]}")
-    flow = AircraftFlow(outline, chosen, fastest)
+    check_envelope(envelope)
+    flow = AircraftFlow(outline, chosen, envelope.range("mach")[1])
     candidates = places(flow)
+    tell(0.4)
     total, static = (ranked(candidates, role, envelope) for role in ("total", "static"))
     polynomial, error = probe_polynomial(choose(static).place, envelope)
-    return Survey(
-        outline, chosen, flow, candidates, envelope, total, static, polynomial, error,
-        paper_case(outline, chosen), _cross_check(outline, envelope) if chosen == "neuralfoil" else None,
-    )  # fmt: skip
+    tell(0.6)
+    paper = paper_case(outline, chosen)
+    cross_check = _cross_check(outline, envelope) if chosen == "neuralfoil" else None
+    tell(1.0)
+    return Survey(outline, chosen, flow, candidates, envelope, total, static, polynomial, error, paper, cross_check)
 
 
 def _cross_check(outline: Outline, envelope: Envelope) -> dict[float, float]:

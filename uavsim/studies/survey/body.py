@@ -60,17 +60,19 @@ class BodyFlow:
         return dx / length, dr / length
 
     @cached_property
-    def _kernels(self) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
-        """Velocity at the middles by a unit σ on each panel, of both modes: along x, along r, around."""
-        x, r = self.middle
-        there = self._nodes()
-        modes = []
-        for mode in (0, 1):
-            along, outwards, around = _panels(mode, x, r, *there)
-            for component, own in zip((along, outwards, around), self._own(mode), strict=True):
-                np.fill_diagonal(component, own)
-            modes.append((along, outwards, around))
-        return modes[0], modes[1]
+    def _axial_kernel(self) -> tuple[Array, Array, Array]:
+        return self._kernel(0)
+
+    @cached_property
+    def _cross_kernel(self) -> tuple[Array, Array, Array]:
+        return self._kernel(1)
+
+    def _kernel(self, mode: int) -> tuple[Array, Array, Array]:
+        """Velocity at the middles by a unit σ on each panel: along x, along r, around."""
+        along, outwards, around = _panels(mode, *self.middle, *self._nodes())
+        for component, own in zip((along, outwards, around), self._own(mode), strict=True):
+            np.fill_diagonal(component, own)
+        return along, outwards, around
 
     def _nodes(self) -> tuple[Array, Array, Array]:
         """Gauss points of all panels, x and r, (panels, points), and their weights, m."""
@@ -95,19 +97,24 @@ class BodyFlow:
         return [np.sum((ahead + behind) * weight, axis=1) for ahead, behind in zip(*sides, strict=True)]
 
     @cached_property
-    def _strength(self) -> tuple[Array, Array]:
-        tx, tr = self.tangent
-        found: list[Array] = []
-        for (kx, kr, _), normal_flow in zip(self._kernels, (-tr, tx), strict=True):
-            system = kr * tx[:, None] - kx * tr[:, None] + 0.5 * np.eye(tx.size)
-            found.append(np.asarray(np.linalg.solve(system, -normal_flow), dtype=float))
-        return found[0], found[1]
+    def _axial_strength(self) -> Array:
+        return self._solve(self._axial_kernel, -self.tangent[1])
+
+    @cached_property
+    def _cross_strength(self) -> Array:
+        return self._solve(self._cross_kernel, self.tangent[0])
+
+    def _solve(self, kernel: tuple[Array, Array, Array], normal_flow: Array) -> Array:
+        """σ of the panels that takes the stream's `normal_flow` away."""
+        (kx, kr, _), (tx, tr) = kernel, self.tangent
+        system = kr * tx[:, None] - kx * tr[:, None] + 0.5 * np.eye(tx.size)
+        return np.asarray(np.linalg.solve(system, -normal_flow), dtype=float)
 
     @cached_property
     def axial(self) -> Array:
         """Speed along the surface, aft, at the middles, in a unit stream along x."""
-        (kx, kr, _), (tx, tr) = self._kernels[0], self.tangent
-        return np.asarray(tx + tx * (kx @ self._strength[0]) + tr * (kr @ self._strength[0]))
+        (kx, kr, _), (tx, tr), sigma = self._axial_kernel, self.tangent, self._axial_strength
+        return np.asarray(tx + tx * (kx @ sigma) + tr * (kr @ sigma))
 
     @cached_property
     def cross(self) -> tuple[Array, Array]:
@@ -115,32 +122,33 @@ class BodyFlow:
 
         At an angle φ from the direction the stream goes to, the velocity is t·cos φ aft and −w·sin φ around.
         """
-        (kx, kr, kw), (tx, tr) = self._kernels[1], self.tangent
-        sigma = self._strength[1]
+        (kx, kr, kw), (tx, tr), sigma = self._cross_kernel, self.tangent, self._cross_strength
         return tr + tx * (kx @ sigma) + tr * (kr @ sigma), 1.0 - kw @ sigma
 
+    def axial_at(self, x: float) -> float:
+        """Speed along the surface at a station in a unit axial stream, linear between the middles; 0 at the ends."""
+        return float(np.interp(x, *self._stations(self.axial, stagnant=True)))
+
     def at(self, x: float) -> tuple[float, float, float]:
-        """Surface speeds at a station, (axial, t, w), linear between the middles; at the very ends of the body exact.
+        """Surface speeds at a station, (axial, t, w), linear between the middles.
 
         At the nose and the tail the axial flow stands still, and the cross flow goes straight past.
         """
-        middle = self.middle[0]
-        ends = np.concatenate(([self.x[0]], middle, [self.x[-1]]))
-        t, w = self.cross
-        found = []
-        for speeds, end in ((self.axial, 0.0), (t, None), (w, None)):
-            first, last = (speeds[0], speeds[-1]) if end is None else (end, end)
-            found.append(float(np.interp(x, ends, np.concatenate(([first], speeds, [last])))))
-        return found[0], found[1], found[2]
+        t, w = (float(np.interp(x, *self._stations(speeds, stagnant=False))) for speeds in self.cross)
+        return self.axial_at(x), t, w
+
+    def _stations(self, speeds: Array, *, stagnant: bool) -> tuple[Array, Array]:
+        ends = (0.0, 0.0) if stagnant else (speeds[0], speeds[-1])
+        along = np.concatenate(([self.x[0]], self.middle[0], [self.x[-1]]))
+        return along, np.concatenate(([ends[0]], speeds, [ends[1]]))
 
     def off_axis(self, x: float, r: float) -> tuple[float, float, float, float]:
         """Velocity off the body, along x and r: in a unit axial stream, and at φ = 0 in a unit cross stream."""
         there = self._nodes()
         point = np.array([x]), np.array([max(r, 1e-6)])
         velocity = []
-        for mode, stream in ((0, (1.0, 0.0)), (1, (0.0, 1.0))):
+        for mode, stream, sigma in ((0, (1.0, 0.0), self._axial_strength), (1, (0.0, 1.0), self._cross_strength)):
             kx, kr, _ = _panels(mode, *point, *there)
-            sigma = self._strength[mode]
             velocity += [stream[0] + float((kx @ sigma)[0]), stream[1] + float((kr @ sigma)[0])]
         return velocity[0], velocity[1], velocity[2], velocity[3]
 

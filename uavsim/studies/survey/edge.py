@@ -20,6 +20,7 @@ Source = Literal["auto", "neuralfoil", "panels"]
 EdgeSpeed = Callable[[Any], Any]
 """Angle of attack of the section, rad -> speed over that of the stream, signed along the surface."""
 
+SOURCES: tuple[Source, ...] = ("auto", "neuralfoil", "panels")
 STATIONS = 32  # of NeuralFoil on each side
 FIRST = 0.5 / STATIONS  # of chord
 ANGLES = np.radians(np.arange(-14.0, 16.01, 1.0))  # rad, where NeuralFoil is asked; held constant beyond

@@ -119,6 +119,16 @@ def load_envelope(folders: Sequence[Path]) -> Envelope:
     return envelope_of([flight.truth for flight in loaded], [str(path) for path in flights])
 
 
+def model_of(aircraft: str) -> str | None:
+    """Return what a scenario calls this aircraft, None if it has no JSBSim model."""
+    from uavsim.plants.hangar import find_aircraft
+
+    try:
+        return str(find_aircraft(aircraft))
+    except ValueError:
+        return None
+
+
 def fly_envelope(
     seed: int = 1, *, model: str | None = None, progress: Callable[[float], None] | None = None
 ) -> Envelope:
@@ -128,7 +138,7 @@ def fly_envelope(
     ----------
     seed : int
     model : str, optional
-        Aircraft to fly, as a scenario names it; None: the scenarios' own.
+        Aircraft to fly, as a scenario names it; None: the scenarios' own, fw8.
     progress : function, optional
         Called with the share that is done.
     """
@@ -141,4 +151,4 @@ def fly_envelope(
         truths.append(fly(load_scenario(name, overrides=overrides, seed=seed)).truth)
         if progress is not None:
             progress((k + 1) / len(DEFAULT))
-    return envelope_of(truths, [f"{name}, seed {seed}" for name in DEFAULT])
+    return envelope_of(truths, [f"{name} (seed {seed})" for name in DEFAULT])

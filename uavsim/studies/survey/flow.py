@@ -13,8 +13,8 @@ junction of wing and fuselage, the wing folded and on its way out.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import pi, radians
 
 import numpy as np
@@ -54,7 +54,6 @@ class AircraftFlow:
     outline: Outline
     source: str = "panels"
     most_mach: float = 0.3
-    _bodies: dict[float, BodyFlow] = field(default_factory=dict, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.most_mach <= MACHS[-1]:
@@ -62,10 +61,7 @@ class AircraftFlow:
 
     def body(self, mach: float = 0.0) -> BodyFlow:
         """Flow about the fuselage with radii times √(1 − M²)."""
-        if mach not in self._bodies:
-            scale = (1.0 - mach * mach) ** 0.5
-            self._bodies[mach] = body_through(self.outline.stations, self.outline.diameters, scale=scale)
-        return self._bodies[mach]
+        return _fuselage(self.outline.stations, self.outline.diameters, mach)
 
     @cached_property
     def _machs(self) -> tuple[float, ...]:
@@ -96,7 +92,7 @@ class AircraftFlow:
     def hole_on_body(self, x: float, azimuth: float) -> Share:
         """Hole in the fuselage at a station, m, and an azimuth from the top to the right, rad."""
         axial, t, w = self.body().at(x)
-        thin = np.array([self.body(mach).at(x)[0] for mach in self._machs])
+        thin = np.array([self.body(mach).axial_at(x) for mach in self._machs])
         radius = self.outline.radius(x)
         line, one = self.wing_line, self.wing_line.zero_lift + 1.0
         gained = line.induced(x, radius * np.sin(azimuth), radius * np.cos(azimuth), one)[0]
@@ -217,6 +213,11 @@ def recovered(angle: Array, limit: float = LIMITS["plain"]) -> Array:
 def reynolds(chord: float) -> float:
     """Reynolds number of a section at the speed of the survey, rounded to two digits."""
     return float(f"{SPEED * chord / KINEMATIC_VISCOSITY:.1e}")
+
+
+@lru_cache(maxsize=16)
+def _fuselage(stations: tuple[float, ...], diameters: tuple[float, ...], mach: float) -> BodyFlow:
+    return body_through(stations, diameters, scale=(1.0 - mach * mach) ** 0.5)
 
 
 def _line(surface: Surface) -> LiftingLine:

@@ -117,7 +117,7 @@ def _notes(holds: bool, front: list[Reading], aft: list[Reading], sides: list[Re
             f"The trailing edge is high only beside the suction ahead of it: Cp {low:.2f} to {high:.2f} without "
             "viscosity; it is no place for a total port."
         )
-    low, high = _span(sides, "coefficient")
+    low, high = _span(sides, "coefficient") or (0.0, 0.0)
     notes.append(
         f"The static pressure is not the same at various positions: elsewhere Cp runs from {low:.2f} to {high:.2f}; "
         "it decides where the static port goes."

@@ -16,6 +16,7 @@ Kind = Literal["hole", "tube", "boom"]
 Role = Literal["total", "static"]
 
 SPANS = (0.3, 0.5, 0.7, 0.9)  # of the half span, fuselage included
+CLEAR = 1.3  # radii of the fuselage, within which a wing's place is in its junction
 CHORDS = (0.05, 0.15, 0.30, 0.50, 0.75, 0.95)  # x/c, upper and lower side
 BODY = (0.02, 0.10, 0.20, 0.30, 0.40, 0.50, 0.60, 0.70, 0.80)  # of the fuselage's length
 NEAR_WING = 0.85  # chords from the wing's quarter chord, within which its lifting line says nothing of the fuselage
@@ -126,6 +127,8 @@ def _wing(flow: AircraftFlow) -> Iterator[Place]:
     wing, folds = flow.outline.wing, flow.outline.folding
     for span in SPANS:
         y = span * wing.tip
+        if y < CLEAR * flow.outline.radius(wing.quarter_chord):
+            continue
         angle = flow.wing_angle(y)
         front, chord, name = wing.leading_edge(y), wing.chord(y), f"wing at {100 * span:.0f} % of span"
         nose = flow.hole_on_section(wing, y, 0.0, angle)
