@@ -14,6 +14,7 @@ import pytest
 from scipy.stats import chi2
 
 from uavsim import airdata, fly, settings
+from uavsim.cosim import replay
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import room
 from uavsim.plants.rig_settings import PlantSettings, length
@@ -223,6 +224,27 @@ def test_a_plain_probe_loses_total_pressure_at_an_angle_and_a_shielded_one_does_
         losses.append((truth["p_total"] - last["p_total"]) / (truth["p_total"] - truth["p_static"]))
     assert losses[0] == pytest.approx(0.01, rel=1e-6)
     assert losses[1] == pytest.approx(0.01 / 9.0, rel=1e-6)  # (20 - 10)²/(40 - 10)² of its 1 %
+
+
+def test_an_offset_is_the_bias_of_the_first_plateau_and_no_error() -> None:
+    """50 Pa on the total sensor: `pressure.total.bias`, to four standard errors of the mean of 200 (4.7 Pa).
+
+    What is left is the noise and the error of that mean: 16.54 Pa to 10 %.
+    """
+    flight = fly("wind-tunnel", overrides=[*QUIET[:5], "air_data.total.offset_pa=50.0", "estimator.kind=paper"])
+    found = flight.score["pressure"]["total"]
+    assert found["bias"] == pytest.approx(50.0, abs=4.7)
+    assert found["rmse_raw"] == pytest.approx(16.54, rel=0.1)
+
+
+def test_a_run_is_scored_from_its_first_to_its_last_row_and_replays_byte_for_byte() -> None:
+    flight = fly("wind-tunnel", overrides=QUIET[:5])
+    assert (
+        flight.score["airspeed"]["samples"] >= 990
+    )  # of 1000 readings in 10 s, less those before the first conversion
+    again = replay(flight)
+    assert again.estimate.equals(flight.estimate)
+    assert again.score == flight.score
 
 
 # -- bad input -------------------------------------------------------------------------------------------------------

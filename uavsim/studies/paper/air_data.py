@@ -83,7 +83,7 @@ class AirDataStudy:
                 f"the same pressures, against {rms(np.array(PRINTED_ERRORS)):.1f} % printed.",
                 details={
                     "compressible_mach": _rounded(self.compressible, 4),
-                    "compressible_error_percent": _rounded(errors(self.compressible), 3),
+                    "compressible_error_percent": _rounded(errors(self.compressible), 6),
                     "compressible_rms_percent": round(rms(errors(self.compressible)), 2),
                     "paper_rms_percent": round(rms(np.array(PRINTED_ERRORS)), 2),
                     "local_speed_of_sound_error_percent": _rounded(errors(self.local), 2),
