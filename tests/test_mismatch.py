@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sensors import PressureSensor, Streams
-from uavsim.cosim import believed_noise
+from uavsim.beliefs import believed_noise
 from uavsim.onboard.airspeed import EstimatorSettings, RandomWalk, process_noise, steady_gain
 from uavsim.scenario import Scenario, load_scenario
 

@@ -4,8 +4,7 @@
 
 The plant, the aircraft in JSBSim or a rig, steps at its own interval. After each step every sensor whose sample is due
 gives it, in the order of the time stamps (an accelerometer reading before a pressure reading of the same instant), and
-the flight computer takes it; its commands act from the plant's next step on. This module alone copies numbers from the
-description of a sensor into the settings of a filter.
+the flight computer takes it; its commands act from the plant's next step on.
 """
 
 import math
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
+from uavsim.beliefs import believed_air, believed_noise, calibrated
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import Estimate, FlightComputer
@@ -53,6 +53,8 @@ class Draws:
     release_time: float  # s
     force_factor: float
     plant_seed: int
+    calibration: tuple[float, float] = (0.0, 0.0)
+    """What a calibration of both membranes along body x found of their sensitivity to acceleration, Pa/(m/s²)."""
 
 
 def draw(scenario: Scenario, index: int = 0) -> Draws:
@@ -65,6 +67,7 @@ def draw(scenario: Scenario, index: int = 0) -> Draws:
         release_time=round(wait * STEP_RATE) / STEP_RATE,
         force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)),
         plant_seed=streams.integer("plant"),
+        calibration=calibrated(scenario, streams),
     )
 
 
@@ -96,8 +99,8 @@ class Onboard:
     which of the two it came from.
     """
 
-    def __init__(self, scenario: Scenario, release_time: float) -> None:
-        air = scenario.air_data
+    def __init__(self, scenario: Scenario, draws: Draws) -> None:
+        air, release_time = scenario.air_data, draws.release_time
         rate = scenario.accelerometer.description().rate
         end = release_time - air.cover_off  # the crew's countdown: the tare is over when the cover is off
         tare = None if air.tare == "none" else (end - air.tare_duration, end)
@@ -106,7 +109,7 @@ class Onboard:
         self.computer = FlightComputer(
             scenario.flight_computer,
             self._detector,
-            airspeed.build(scenario.estimator, believed_noise(scenario), tare),
+            airspeed.build(believed_air(scenario), believed_noise(scenario, draws.calibration), tare),
             rate,
             launch_axis(scenario.plant.kind, scenario.detector.axes),
         )
@@ -185,7 +188,7 @@ class Cosimulation:
             vibration=None if self.head.full else self.vibration,
             air_temperature=self.plant.air_temperature,
         )
-        self.onboard = Onboard(scenario, release)
+        self.onboard = Onboard(scenario, self.draws)
         self.readings: list[float] = []  # flat: plain floats cost the collector nothing
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
@@ -243,22 +246,6 @@ class Cosimulation:
     def finish(self) -> Flight:
         """Turn what was recorded into a flight with its score."""
         return _flight(self)
-
-
-def believed_noise(scenario: Scenario) -> airspeed.NoiseModel:
-    """What the estimator believes of the head.
-
-    Numbers of the description that the simulated units are drawn from, through the scenario's `[mismatch]`.
-    """
-    total, static = scenario.air_data.total.description(), scenario.air_data.static.description()
-    belief = scenario.mismatch
-    return airspeed.NoiseModel(
-        total_sd=belief.total_noise * total.noise_sd,
-        static_sd=belief.static_noise * static.noise_sd,
-        temperature_sd=belief.temperature * math.hypot(static.temperature_noise_sd, static.temperature_offset_sd),
-        total_tuned_sd=total.noise_sd,
-        static_tuned_sd=static.noise_sd,
-    )
 
 
 def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
@@ -357,7 +344,7 @@ def replay(flight: Flight) -> Flight:
     """
     scenario = Scenario.from_dict(flight.scenario)
     draws = draw(scenario)
-    onboard = Onboard(scenario, draws.release_time)
+    onboard = Onboard(scenario, draws)
     readings = flight.accelerometer.to_numpy().tolist()
     air: list[AirReading] = [(a, b, c, d, e, f) for a, b, c, d, e, f in flight.air_data.to_numpy().tolist()]
     next_air = 0

@@ -74,11 +74,35 @@ class MismatchSettings:
         Factor on the standard deviation of a reading of the pressure.
     temperature : float
         Factor on the standard deviation of the temperature.
+    drift : float
+        Factor on the random walk of the pair's difference.
+    lag : float
+        Factor on the age of a pressure when its conversion ends: half the conversion, port, tube and digital filter.
+    acceleration : float
+        Factor on what is known of the pressure error per specific force: the air column in the tubes, and membranes.
+    acceleration_sd : float
+        Factor on the standard deviation of what is not known of it.
+    acceleration_calibration : float
+        Error of a calibration of the membranes' sensitivity, as a share of what is usual for the part.
+    accelerometer_noise : float
+        Factor on the standard deviation of a reading of specific force, vibration included.
+    accelerometer_scale : float
+        Factor on the standard deviation of its scale error.
+    gust : float
+        Factor on the standard deviation of the turbulence that the environment declares.
     """
 
     total_noise: Belief = 1.0
     static_noise: Belief = 1.0
     temperature: Belief = 1.0
+    drift: Belief = 1.0
+    lag: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
+    acceleration: Annotated[float, Interval(ge=-10.0, le=10.0)] = 1.0
+    acceleration_sd: Belief = 1.0
+    acceleration_calibration: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.3
+    accelerometer_noise: Belief = 1.0
+    accelerometer_scale: Belief = 1.0
+    gust: Belief = 1.0
 
 
 @dataclass(frozen=True, slots=True)

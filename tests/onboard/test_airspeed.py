@@ -485,7 +485,7 @@ def test_equals_filterpy():
     """3000 noisy readings from rest to 40 m/s with missing values, repeats, late rows and a tare: equal to 1e-9."""
     generator = random.Random(20)
     noise = NoiseModel(3.7, 2.4, 0.4)
-    ours = airspeed.build(EstimatorSettings(vapour_fraction=0.01), noise, (0.5, 2.0))
+    ours = airspeed.build(EstimatorSettings(kind="paper", vapour_fraction=0.01), noise, (0.5, 2.0))
     theirs = airspeed.build(EstimatorSettings(kind="paper-filterpy", vapour_fraction=0.01), noise, (0.5, 2.0))
     assert type(ours) is PaperFilter
     assert type(theirs) is airspeed.FilterpyFilter

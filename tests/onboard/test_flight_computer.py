@@ -44,9 +44,21 @@ class Oracle:
 
     def __init__(self) -> None:
         self.next: Estimate | None = None
+        self.told: list[tuple[str, float]] = []
 
     def step(self, *reading: float) -> Estimate | None:
         return self.next
+
+    aided = False
+
+    def accelerometer(self, *reading: float) -> None:
+        raise AssertionError("an estimator that wants no specific force is given one")
+
+    def launched(self, t: float) -> None:
+        self.told.append(("launched", t))
+
+    def rearmed(self, t: float) -> None:
+        self.told.append(("rearmed", t))
 
 
 def computer(*times: float, **settings: float) -> FlightComputer:
@@ -375,13 +387,59 @@ def test_while_the_airspeed_is_to_be_gained_the_pitch_is_the_launchs() -> None:
     assert box.commands[2] <= math.radians(SETTINGS.launch_pitch_deg) + 1e-12
 
 
-@pytest.mark.parametrize("bad", [{"valid": False}, {"air": NAN}])
-def test_without_a_valid_estimate_the_commands_stay(bad: dict[str, Any]) -> None:
+def lost(box: FlightComputer, first: float, last: float, **bad: Any) -> None:
+    for k in range(round((last - first) * 100)):
+        reading(box, first + 0.01 * k, 3.0, **bad)
+
+
+def test_an_estimate_that_is_invalid_for_a_moment_changes_nothing() -> None:
     box = flying()
     reading(box, 4.0, SETTINGS.airspeed - 1.0)
     before = box.commands
-    for k in range(100):
-        reading(box, 4.01 + 0.01 * k, 3.0, height=500.0, **bad)
+    lost(box, 4.01, 4.01 + SETTINGS.loss_time, height=500.0, valid=False)
+    assert box.commands is before
+    reading(box, 4.2, SETTINGS.airspeed - 1.0)
+    lost(box, 4.21, 4.21 + SETTINGS.loss_time, height=500.0, valid=False)  # counted anew
+    assert not {"airspeed_lost", "airspeed_back"} & set(events(box))
+
+
+def test_an_estimate_that_stays_invalid_is_given_up_for_a_safe_throttle_and_the_height_is_held() -> None:
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed - 1.0)
+    lost(box, 4.01, 6.0, height=SETTINGS.height, valid=False)
+    assert SETTINGS.loss_time < events(box)["airspeed_lost"] - 4.0 <= SETTINGS.loss_time + 0.021
+    assert box.commands[1] == pytest.approx(SETTINGS.safe_throttle, abs=1e-3)
+    climb = math.radians(SETTINGS.climb_pitch_deg)
+    for height, pitch in ((-500.0, climb), (500.0, -climb)):
+        reading(box, 6.0 + height / 1e3 + 1.0, 3.0, height=height, valid=False)
+        assert box.commands[2] == pytest.approx(pitch)
+        wanted = SETTINGS.safe_throttle + SETTINGS.throttle_climb * pitch
+        assert box.commands[1] == pytest.approx(wanted, abs=1e-9)
+
+
+def test_an_estimate_that_comes_back_is_flown_on_as_before() -> None:
+    """What the integral had gathered is there again, and nothing was added to it in the meantime."""
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed)
+    before = throttle(box)
+    lost(box, 4.01, 20.0, valid=False)
+    for k in range(30):
+        reading(box, 20.0 + 0.01 * k, SETTINGS.airspeed)
+    assert throttle(box) == pytest.approx(before, abs=1e-9)
+    assert SETTINGS.loss_time <= events(box)["airspeed_back"] - 20.0 <= SETTINGS.loss_time + 0.021
+    assert [e["event"] for e in box.events][-2:] == ["airspeed_lost", "airspeed_back"]
+
+
+def test_without_a_temperature_the_last_one_serves_and_without_a_static_pressure_nothing_changes() -> None:
+    box = flying()
+    reading(box, 4.0, SETTINGS.airspeed)
+    reading(box, 4.01, SETTINGS.airspeed, height=10.0, air=NAN)
+    assert box.commands[2] == pytest.approx(
+        math.radians(SETTINGS.level_pitch_deg) + SETTINGS.height_gain * (SETTINGS.height - 10.0), rel=0.01
+    )
+    before = box.commands
+    box.estimator.next = (4.02, SETTINGS.airspeed, 0.1, 0.0, NAN, NAN, True, 1.0, 1.0)
+    box.air_data(4.02, NAN, NAN, AIR, 4.02, 4.02)
     assert box.commands is before
 
 
@@ -429,6 +487,39 @@ def test_height_is_counted_from_the_first_pressure() -> None:
     height = airdata.hypsometric_height(1e5 * math.exp(-10.0 * G / (287.05 * AIR)), 1e5, AIR)
     expected = SETTINGS.height_gain * (SETTINGS.height - height)
     assert pitches[0] == pytest.approx(math.radians(SETTINGS.level_pitch_deg) + expected, abs=1e-4)
+
+
+# -- the estimator is told -------------------------------------------------------------------------------------------
+
+
+def test_the_estimator_is_told_of_a_launch_and_of_one_that_was_none() -> None:
+    box = computer(2.02, 5.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.06)
+    feed(box, REST, 2.06, 5.0)
+    feed(box, 8.0 * G, 5.0, 5.4)
+    feed(box, -1.0, 5.4, 7.0)
+    at = [(e["event"], e["t"]) for e in box.events]
+    told = dict(at)
+    assert box.estimator.told == [("launched", at[0][1]), ("rearmed", told["not_a_launch"]), ("launched", at[3][1])]
+
+
+def test_an_aided_estimator_gets_every_reading_before_it_is_told_of_the_launch() -> None:
+    """In all states, as it was read, whatever the launch axis is."""
+
+    class Aided(Oracle):
+        aided = True
+
+        def accelerometer(self, *reading: float) -> None:
+            self.told.append(("felt", reading[0]))
+            assert reading[1:] == (reading[1], 0.0, -9.6)
+
+    box = FlightComputer(SETTINGS, Spotter(2.02), Aided(), RATE, "-z")
+    feed(box, REST, 0.0, 2.1)
+    felt = [t for kind, t in box.estimator.told if kind == "felt"]
+    assert felt == [k / RATE for k in range(2100)]
+    launch = box.estimator.told.index(("launched", 2.02))
+    assert box.estimator.told[launch - 1] == ("felt", 2.02)
 
 
 # -- with the real detector ------------------------------------------------------------------------------------------

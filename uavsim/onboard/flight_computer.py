@@ -17,12 +17,15 @@ themselves are stabilised inside the aircraft:
     pitch    = level pitch + K_h (set height - height), at most that of the climb; while more airspeed than a margin is
                still to be gained, that of the launch, and between the two in proportion.
 
+An estimate that has not been valid for a while is not flown on: the throttle then goes to one that is safe at any
+pitch, safe level + K_c (pitch - level pitch), and the height is held on, until the estimate has been valid for as long.
+
 Sees readings and time, never truth. Scalar, constant memory.
 """
 
 from collections import deque
 from dataclasses import dataclass
-from math import isfinite, isnan, radians
+from math import isfinite, isnan, nan, radians
 from typing import Annotated, Any, Protocol
 
 from annotated_types import Interval
@@ -56,6 +59,19 @@ class Estimator(Protocol):
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
         """Take one reading of the head; None if it is not newer than the last."""
+
+    @property
+    def aided(self) -> bool:
+        """Whether it wants the readings of specific force."""
+
+    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Take one reading of specific force, m/s^2, body axes."""
+
+    def launched(self, t: float) -> None:
+        """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
+
+    def rearmed(self, t: float) -> None:
+        """Be told that it was none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +116,10 @@ class FlightComputerSettings:
         Throttle for an integrated airspeed error, 1/m.
     throttle_climb
         Throttle for pitch above level, 1/rad.
+    safe_throttle
+        Throttle in level flight while no airspeed is known, 0 ... 1.
+    loss_time
+        How long an estimate must have been invalid to be given up, and valid to be flown on again, s.
     """
 
     airspeed: Annotated[float, Interval(ge=10, le=100)] = 32.0
@@ -120,6 +140,8 @@ class FlightComputerSettings:
     throttle_gain: Annotated[float, Interval(ge=0, le=1)] = 0.25
     throttle_rate: Annotated[float, Interval(ge=0, le=1)] = 0.05
     throttle_climb: Annotated[float, Interval(ge=0, le=10)] = 2.5
+    safe_throttle: Annotated[float, Interval(ge=0, le=1)] = 0.7
+    loss_time: Annotated[float, Interval(ge=0, le=10)] = 0.1
 
 
 class FlightComputer:
@@ -160,6 +182,7 @@ class FlightComputer:
         self.state = "waiting"
         self.commands: Commands = (0.0, 0.0, radians(settings.launch_pitch_deg), 0.0, 0.0)
         self.events: list[dict[str, Any]] = []
+        self._feel = estimator.accelerometer if estimator.aided else None
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
@@ -174,9 +197,14 @@ class FlightComputer:
         self._reference_pressure: float | None = None
         self._throttle_integral = settings.throttle_level
         self._last_estimate = 0.0
+        self._trusted = True
+        self._changed_since: float | None = None
+        self._temperature = nan
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force, m/s^2, body axes."""
+        if self._feel is not None:
+            self._feel(t, fx, fy, fz)
         state = self.state
         if state == "flying":
             return
@@ -226,6 +254,7 @@ class FlightComputer:
         self._speed_gain = 0.0
         self._quiet_since = None
         self._recent.clear()
+        self.estimator.launched(t)
 
     def _follow_stroke(self, t: float, fx: float) -> None:
         if isnan(fx) or not t > self._last:  # a late reading, or one without a time, counts no time
@@ -250,6 +279,7 @@ class FlightComputer:
             self._command(engaged=1.0)
         else:
             self.state, self._next_action = "rearming", t + s.rearm_delay
+            self.estimator.rearmed(t)
 
     def _act(self, t: float) -> None:
         """Take the step that was waited for."""
@@ -270,16 +300,39 @@ class FlightComputer:
     # -- cruise ------------------------------------------------------------------------------------------------------
 
     def _hold(self, estimate: Estimate, temperature: float) -> None:
-        """Airspeed by throttle, height by pitch. Without a valid estimate both stay as they are."""
+        """Airspeed by throttle, height by pitch. Without a valid estimate both stay as they are until it is given up.
+
+        A static pressure or temperature that is no number leaves the height at what it was last.
+        """
         t, airspeed, _, _, _, p_static, valid, _, _ = estimate
         dt = min(max(t - self._last_estimate, 0.0), 10 * LONGEST_STEP)
         self._last_estimate = t
-        if not valid or self._reference_pressure is None or not isfinite(temperature):
+        self._trust(t, valid)
+        if isfinite(temperature):
+            self._temperature = temperature
+        if self._reference_pressure is None or isnan(self._temperature) or not isfinite(p_static):
             return
-        error = self.settings.airspeed - airspeed
-        height = airdata.hypsometric_height(p_static, self._reference_pressure, temperature)
+        if self._trusted and not valid:
+            return
+        error = self.settings.airspeed - airspeed if self._trusted else 0.0
+        height = airdata.hypsometric_height(p_static, self._reference_pressure, self._temperature)
         pitch = self._pitch(error, height)
-        self._command(throttle=self._throttle(error, pitch, dt), pitch=pitch)
+        self._command(throttle=self._throttle(error, pitch, dt) if self._trusted else self._safe(pitch), pitch=pitch)
+
+    def _trust(self, t: float, valid: bool) -> None:
+        """Give up an estimate that stays invalid; take it up again when it has stayed valid."""
+        if valid == self._trusted:
+            self._changed_since = None
+        elif self._changed_since is None and self.settings.loss_time > 0.0:
+            self._changed_since = t
+        elif self._changed_since is None or t - self._changed_since >= self.settings.loss_time:
+            self._trusted, self._changed_since = valid, None
+            self._note(t, "airspeed_back" if valid else "airspeed_lost")
+
+    def _safe(self, pitch: float) -> float:
+        """Throttle, 0 … 1, that keeps flying at a pitch command, rad, whatever the airspeed is."""
+        s = self.settings
+        return min(max(s.safe_throttle + s.throttle_climb * (pitch - radians(s.level_pitch_deg)), 0.0), 1.0)
 
     def _pitch(self, error: float, height: float) -> float:
         """Pitch command, rad, for an airspeed error, m/s, at a height, m."""

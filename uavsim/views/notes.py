@@ -65,7 +65,7 @@ def _total_channel(flight: "Flight") -> tuple[float, float, float, float]:
     A random-walk filter of steady gain K leaves sqrt(K / (2 - K)) of white noise and follows a ramp with an error of
     slope * interval * (1 - K) / K.
     """
-    from uavsim.cosim import believed_noise
+    from uavsim.beliefs import believed_noise
     from uavsim.onboard.airspeed import process_noise, steady_gain
     from uavsim.scenario import Scenario
 

@@ -71,6 +71,7 @@ class AidedFilter:
         The instant that it stands at, s.
     """
 
+    aided = True
     __slots__ = (
         "_density", "_force", "_gained", "_gas", "_gust", "_heat", "_held", "_held_count", "_noise", "_on_rail",
         "_patience", "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings", "_settled",

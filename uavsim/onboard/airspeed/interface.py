@@ -20,6 +20,10 @@ TareWindow = tuple[float, float]
 class Estimator(Protocol):
     """What the flight computer asks of an airspeed estimator."""
 
+    @property
+    def aided(self) -> bool:
+        """Whether it wants the readings of specific force."""
+
     def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:

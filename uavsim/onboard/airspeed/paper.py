@@ -63,6 +63,7 @@ class PaperFilter:
     window the tare is 0.
     """
 
+    aided = False
     __slots__ = (
         "_compressible",
         "_heating",

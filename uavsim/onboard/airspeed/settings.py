@@ -76,7 +76,7 @@ class EstimatorSettings:
         Of the aided filter.
     """
 
-    kind: Literal["paper", "paper-filterpy", "constant-velocity", "jump-adaptive", "aided"] = "paper"
+    kind: Literal["paper", "paper-filterpy", "constant-velocity", "jump-adaptive", "aided"] = "aided"
     model: airdata.Model = "compressible"
     gain_total: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.8
     gain_static: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.3
