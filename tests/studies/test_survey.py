@@ -386,7 +386,7 @@ def test_what_is_written(tmp_path):
     found = surveyed()
     view.save(found, tmp_path / "out", overwrite=False, plots=True)
     folder = tmp_path / "out"
-    names = {"survey.json", "survey.csv", "position_error.toml", "position_error.csv", "map.png"}
+    names = {"survey.json", "survey.csv", "position_error.toml", "position_error.csv", "map.png", "pressures.png"}
     assert {path.name for path in folder.iterdir()} == names
     data = json.loads((folder / "survey.json").read_text(encoding="utf-8"))
     assert data["named"]["static"]["place"] == choose(found.static).place.name

@@ -1,5 +1,6 @@
 """`uavsim survey`: where to mount the air-data head."""
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -48,7 +49,7 @@ def survey(
         source = choose_source(SOURCES[SOURCES.index(choose("--sections", sections, SOURCES))])
 
     def place() -> Path:
-        return folder(out, f"survey-{outline.name}", overwrite=overwrite)
+        return folder(out, f"survey-{re.sub(r'[^A-Za-z0-9_-]+', '-', outline.name)}", overwrite=overwrite)
 
     place()
     envelope = _envelope(aircraft, flights or [], seed)

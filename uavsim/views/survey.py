@@ -2,8 +2,9 @@
 
 `survey.json` has all figures, `survey.csv` a row a place and role, `position_error.toml` is a scenario whose static
 port has the position error of the place that is named, `position_error.csv` the same as a table over Mach number, angle
-of attack and sideslip, `map.png` the places on the aircraft's outline. Written under another name and renamed when it
-is whole.
+of attack and sideslip, `map.png` the places on the aircraft's outline,
+`pressures.png` the pressure along fuselage and wing in the published case. Written under another name and renamed when
+it is whole.
 """
 
 import csv
@@ -13,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from uavsim import airdata
 from uavsim.flight import claim, unfinished, write_json, write_toml
 from uavsim.studies.survey import Survey, box, choose
+from uavsim.studies.survey.paper_case import curves
 from uavsim.studies.survey.ranking import Rank, pair_error
 from uavsim.views.figure import BLACK, BLUE, DARK, GREY, LIGHT, RED, SMALL, dress, label, sheet
 from uavsim.views.figure import save as save_figure
@@ -51,6 +54,7 @@ def save(found: Survey, target: Path, *, overwrite: bool, plots: bool) -> Path:
         _write_rows(folder / "position_error.csv", _table(found))
         if plots:
             save_map(found, folder / "map.png")
+            save_pressures(found, folder / "pressures.png")
     return target
 
 
@@ -83,7 +87,7 @@ def summary(found: Survey) -> dict[str, Any]:
         "neuralfoil_minus_panels": None
         if found.cross_check is None
         else {f"{place:+g}": value for place, value in found.cross_check.items()},
-        "paper_case": found.paper,
+        "paper_case": {**found.paper, "over_the_flights": _over_the_flights(found)},
     }  # fmt: skip
 
 
@@ -165,7 +169,23 @@ def lines(found: Survey) -> list[str]:
         said.append(f"{role} port: {best.place.name}, {_figures(best)}{also}")
     raw, calibrated = pair_error(choose(found.total).place, choose(found.static).place, e)
     said.append(f"both together: {raw:.2f} m/s rms, calibrated once {calibrated:.2f}")
-    return [*said, "", "published case, Mach 0.6, alpha 1 deg:", *(f"  {note}" for note in found.paper["notes"])]
+    notes = [*found.paper["notes"], *_over_the_flights(found)]
+    return [*said, "", "published case, Mach 0.6, alpha 1 deg:", *(f"  {note}" for note in notes)]
+
+
+def _over_the_flights(found: Survey) -> list[str]:
+    """What the flights make of the published places, windward front and leading edge: holes there, m/s rms."""
+    holes = {each.place.part: each for each in reversed(found.total) if each.place.kind == "hole"}
+    if "wing" not in holes:
+        return []
+    nose, wing = holes["nose"], holes["wing"]
+    out = (
+        "" if wing.available > 1.0 - 1e-9 else f", and it is in the stream in {100 * wing.available:.0f} % of the rows"
+    )
+    return [
+        f"Over the flights a hole in the wing's leading edge costs {wing.raw:.2f} m/s rms at best{out}; one at the "
+        f"nose's tip {nose.raw:.2f}, the tube named above {choose(found.total).raw:.2f}."
+    ]
 
 
 def _figures(each: Rank) -> str:
@@ -177,7 +197,37 @@ def _line(each: Rank) -> str:
     return f"{each.place.name:<42}{each.raw:>12.3f}{each.constant:>12.3f}{100 * each.available:>10.0f}%{mark}"
 
 
-# -- the map
+# -- figures
+
+
+def save_pressures(found: Survey, path: Path) -> None:
+    """Draw Cp along fuselage and wing at Mach 0.6 and 1 degree, with the stagnation and the critical value."""
+    figure, grid = sheet(
+        f"Surface pressure at Mach 0.6, angle of attack 1 degree: {found.outline.name}",
+        "Cp upwards is suction.  The published case (its Table 6) on this aircraft; beside the wing the fuselage is "
+        "not computed",
+        (1.0,), (1.0, 1.0), size=(11.5, 5.6), right=0.4, share=False, gap=(0.1, 0.2),
+    )  # fmt: skip
+    colours = {"top": BLUE, "side": GREY, "bottom": RED, "upper side": BLUE, "lower side": RED}
+    for axes, part in zip(grid[0], ("fuselage", "wing"), strict=True):
+        for curve in (each for each in curves(found.outline, found.source) if each.part == part):
+            x, cp = np.array(curve.x), np.array(curve.cp)
+            if part == "fuselage":  # a gap where the wing is
+                cut = int(np.argmax(np.diff(x))) + 1
+                x, cp = np.insert(x, cut, np.nan), np.insert(cp, cut, np.nan)
+            colour = next(colours[key] for key in colours if curve.name.startswith(key))
+            dashed = "--" if "90 %" in curve.name else "-"
+            axes.plot(x, cp, color=colour, linestyle=dashed, linewidth=1.3, label=curve.name)
+        for value, name in (("stagnation", "stagnation"), ("critical_cp", "sonic")):
+            level = airdata.impact_over_dynamic(0.6) if value == "stagnation" else found.paper[value]
+            axes.axhline(level, color=DARK, linewidth=0.8, linestyle=":")
+            axes.annotate(name, (1.0, level), xycoords=("axes fraction", "data"), xytext=(-3, 3), ha="right",
+                          textcoords="offset points", fontsize=SMALL, color=DARK)  # fmt: skip
+        axes.set_ylim(1.25, -1.6)
+        axes.margins(x=0.02)
+        label(axes, "Cp", "x, aft of the nose, m" if part == "fuselage" else "x/c")
+        axes.legend(fontsize=SMALL, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 0.1))
+    save_figure(figure, path)
 
 
 def save_map(found: Survey, path: Path) -> None:

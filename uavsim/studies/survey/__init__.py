@@ -96,7 +96,7 @@ def survey(
     tell = progress or (lambda share: None)
     chosen = choose_source(source)
     check_envelope(envelope)
-    flow = AircraftFlow(outline, chosen, envelope.range("mach")[1])
+    flow = AircraftFlow(outline, chosen, envelope.range("mach")[1], envelope.mean_speed)
     candidates = places(flow)
     tell(0.4)
     total, static = (ranked(candidates, role, envelope) for role in ("total", "static"))
@@ -110,4 +110,6 @@ def survey(
 
 def _cross_check(outline: Outline, envelope: Envelope) -> dict[float, float]:
     sides = tuple(side * chord for side in (1.0, -1.0) for chord in CHORDS)
-    return disagreement(outline.wing.airfoil, sides, reynolds(outline.wing.root_chord), box(envelope)[0])
+    return disagreement(
+        outline.wing.airfoil, sides, reynolds(envelope.mean_speed, outline.wing.root_chord), box(envelope)[0]
+    )

@@ -51,6 +51,11 @@ class Envelope:
     weight: Array
     source: tuple[str, ...]
 
+    @property
+    def mean_speed(self) -> float:
+        """Weighted mean airspeed, m/s."""
+        return float(np.sum(self.weight * self.airspeed))
+
     def range(self, name: str) -> tuple[float, float]:
         """Least and largest of a column."""
         column = getattr(self, name)

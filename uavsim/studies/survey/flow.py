@@ -32,8 +32,7 @@ Array = NDArray[np.float64]
 Share = Callable[[Array, Array, Array], Array]
 """alpha, beta, rad, Mach number -> (p − p_s)/q_c."""
 
-KINEMATIC_VISCOSITY = 1.46e-5  # m²/s, air of the standard sea level
-SPEED = 32.0  # m/s, of the Reynolds numbers
+KINEMATIC_VISCOSITY = 1.46e-5  # m²/s, air of the standard sea level; 300 K and 101 325 Pa have 1.57e-5
 MACHS = (0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9)  # where bodies are solved for Göthert's rule
 PIPE = 0.05  # m, length of a tube ahead of the surface: the published head's
 
@@ -49,11 +48,14 @@ class AircraftFlow:
         What gives the speed along sections.
     most_mach : float
         Largest Mach number that will be asked for, below 0.9.
+    speed : float
+        Airspeed of the sections' Reynolds numbers, m/s.
     """
 
     outline: Outline
     source: str = "panels"
     most_mach: float = 0.3
+    speed: float = 30.0
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.most_mach <= MACHS[-1]:
@@ -154,7 +156,7 @@ class AircraftFlow:
 
     def hole_on_section(self, surface: Surface, y: float, place: float, angle: Callable[[Array], Array]) -> Share:
         """Hole in a wing or tailplane at x/c = `place`, above 0 on the upper, below 0 on the lower side."""
-        speed = edge_speed(surface.airfoil, place, self.source, reynolds(surface.chord(y)))
+        speed = edge_speed(surface.airfoil, place, self.source, reynolds(self.speed, surface.chord(y)))
 
         def share(alpha: Array, beta: Array, mach: Array) -> Array:
             normal = np.cos(beta)
@@ -165,7 +167,7 @@ class AircraftFlow:
 
     def hole_on_fin(self, fin: Surface, z: float, place: float) -> Share:
         """Hole in the fin at x/c = `place`, above 0 on its right side; β takes the place of α."""
-        speed = edge_speed(fin.airfoil, place, self.source, reynolds(fin.chord(z)))
+        speed = edge_speed(fin.airfoil, place, self.source, reynolds(self.speed, fin.chord(z)))
         height = fin.tip - fin.root
         ratio = 2.0 * height / (0.5 * (fin.root_chord + fin.tip_chord))  # mirrored in the fuselage
         kept = ratio / (ratio + 2.0)
@@ -210,9 +212,9 @@ def recovered(angle: Array, limit: float = LIMITS["plain"]) -> Array:
     return np.maximum(1.0 - 0.01 * (beyond / (limit - FREE_ANGLE)) ** 2, 0.0)
 
 
-def reynolds(chord: float) -> float:
-    """Reynolds number of a section at the speed of the survey, rounded to two digits."""
-    return float(f"{SPEED * chord / KINEMATIC_VISCOSITY:.1e}")
+def reynolds(speed: float, chord: float) -> float:
+    """Reynolds number of a section, rounded to two digits."""
+    return float(f"{speed * chord / KINEMATIC_VISCOSITY:.1e}")
 
 
 @lru_cache(maxsize=16)

@@ -141,6 +141,8 @@ def _wing(w: Mapping[str, Any]) -> Surface:
     if len(pivot) != 2:
         raise ValueError("wing.pivot: x and y, two numbers")
     chord, length = _positive(w, "wing.chord"), _positive(w, "wing.length")
+    if pivot[1] + length <= 0.0:
+        raise ValueError("wing.pivot: y must be on the right side, with wing.length beyond it")
     front = pivot[0] - _number(w, "wing.pivot_chord_fraction") * chord
     return Surface(
         _airfoil(w, "wing.airfoil"), front + 0.25 * chord, 0.0, pivot[1] + length, chord, chord,

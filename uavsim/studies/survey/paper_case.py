@@ -16,9 +16,11 @@ import numpy as np
 from uavsim import airdata
 from uavsim.studies.survey.compressible import critical_coefficient
 from uavsim.studies.survey.flow import AircraftFlow
-from uavsim.studies.survey.places import Place, places
+from uavsim.studies.survey.geometry import Outline
+from uavsim.studies.survey.places import Place, at_wing, places
 
 MACH, TEMPERATURE, PRESSURE, ALPHA = 0.6, 300.0, 101_325.0, radians(1.0)  # Table 6
+SPEED = MACH * airdata.speed_of_sound(TEMPERATURE)  # m/s
 FRONT = ("nose, hole at the tip", "leading edge")
 OFF_CENTRE = (0.0, 0.25, 0.5, 0.75, 0.9)  # of the radius from the middle of a round front
 
@@ -57,9 +59,51 @@ def readings(candidates: list[Place]) -> list[Reading]:
     return sorted(found, key=lambda each: -each.pressure)
 
 
-def paper_case(outline: Any, source: str) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Cp along a line of the surface in the published case.
+
+    Attributes
+    ----------
+    name : str
+    part : str
+        "fuselage" or "wing".
+    x : tuple of float
+        Along the fuselage, m, or x/c.
+    cp : tuple of float
+    """
+
+    name: str
+    part: str
+    x: tuple[float, ...]
+    cp: tuple[float, ...]
+
+
+def curves(outline: Outline, source: str) -> list[Curve]:
+    """Cp along fuselage and wing in the published case, as its Figure 14 shows it in colours."""
+    flow = AircraftFlow(outline, source, MACH, SPEED)
+    wing, over = outline.wing, airdata.impact_over_dynamic(MACH)
+    at = np.array(ALPHA), np.array(0.0), np.array(MACH)
+    first, length = outline.stations[0], outline.stations[-1] - outline.stations[0]
+    stations = first + length * np.linspace(0.0, 0.96, 97) ** 1.5
+    chords = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, 60)))[:-1]
+    found = []
+    for name, azimuth in (("top", 0.0), ("side", 0.5 * np.pi), ("bottom", np.pi)):
+        clear = [x for x in map(float, stations) if not at_wing(outline, x)]
+        cp = tuple(float(flow.hole_on_body(x, azimuth)(*at)) * over for x in clear)
+        found.append(Curve(name, "fuselage", tuple(clear), cp))
+    for span in (0.5, 0.9):
+        y = span * wing.tip
+        for side, word in ((1.0, "upper"), (-1.0, "lower")):
+            shares = (flow.hole_on_section(wing, y, side * x, flow.wing_angle(y))(*at) for x in map(float, chords))
+            name = f"{word} side at {100 * span:.0f} % of span"
+            found.append(Curve(name, "wing", tuple(map(float, chords)), tuple(float(s) * over for s in shares)))
+    return found
+
+
+def paper_case(outline: Outline, source: str) -> dict[str, Any]:
     """Judge the published conclusion by the pressures on this aircraft: a table with figures and notes."""
-    flow = AircraftFlow(outline, source, MACH)
+    flow = AircraftFlow(outline, source, MACH, SPEED)
     candidates = [place for place in places(flow) if place.kind == "hole"]
     read = readings(candidates)
     total = airdata.total_pressure(static=PRESSURE, mach=MACH)
@@ -114,8 +158,8 @@ def _notes(holds: bool, front: list[Reading], aft: list[Reading], sides: list[Re
     if aft:
         low, high = _span(aft, "coefficient")
         notes.append(
-            f"The trailing edge is high only beside the suction ahead of it: Cp {low:.2f} to {high:.2f} without "
-            "viscosity; it is no place for a total port."
+            f"The trailing edge is high only beside the suction ahead of it: Cp {low:.2f} to {high:.2f}; it "
+            "is no place for a total port."
         )
     low, high = _span(sides, "coefficient") or (0.0, 0.0)
     notes.append(

@@ -102,7 +102,7 @@ def _fuselage(flow: AircraftFlow) -> Iterator[Place]:
     first, length = outline.stations[0], outline.stations[-1] - outline.stations[0]
     for share in BODY:
         x = first + share * length
-        if _at_wing(outline, x):
+        if at_wing(outline, x):
             continue
         radius = outline.radius(x)
         for name, azimuths in (
@@ -118,7 +118,7 @@ def _fuselage(flow: AircraftFlow) -> Iterator[Place]:
             yield Place(label, "fuselage", "hole", ("static",), position, holes, caveat=caveat, shifted=moved)
 
 
-def _at_wing(outline: Outline, x: float) -> bool:
+def at_wing(outline: Outline, x: float) -> bool:
     """Tell whether a station is beside the wing, where the flow of their junction is not known here."""
     return abs(x - outline.wing.quarter_chord) < NEAR_WING * outline.wing.root_chord
 
