@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.aided import ANYWHERE, SLOWEST
+from uavsim.onboard.airspeed.aided import AROUND, SLOWEST
 from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
 
 Array = NDArray[np.float64]
@@ -72,8 +72,7 @@ class Information:
 
     def covariance(self) -> Array:
         """Return the bound on the covariance, shape (n, n)."""
-        found: Array = np.linalg.inv(self.matrix)
-        return found
+        return np.asarray(np.linalg.inv(self.matrix), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -176,7 +175,7 @@ class AirspeedBound:
             [
                 settings.wind_sd**2,
                 bias,
-                ANYWHERE**2,
+                AROUND**2,
                 bias + start.rest_sd**2,
                 start.tare_sd**2,
                 max(noise.acceleration_sd, 1e-6) ** 2,

@@ -16,12 +16,13 @@ measured in flight.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import sqrt
+from math import copysign, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_PRESSURE, STANDARD_TEMPERATURE
+from uavsim.consistency import Consistency, judge
 from uavsim.onboard.airspeed import AidedFilter, EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.aided import SLOWEST
 from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
@@ -206,7 +207,9 @@ class Matched:
     raw_error : ndarray
         Shape (m, r): of the raw airspeed.
     nis : ndarray
-        Shape (m, r): normalised innovation squared of both readings together, 2 on average.
+        Shape (m, r, 2): normalised innovations squared of total and static pressure.
+    innovation : ndarray
+        Shape (m, r): innovations of the total pressure over their standard deviation.
     bound : ndarray
         Shape (r,): the least standard deviation that the information allows, m/s.
     """
@@ -216,12 +219,18 @@ class Matched:
     sd: Array
     raw_error: Array
     nis: Array
+    innovation: Array
     bound: Array
 
     def rmse(self) -> Array:
         """Root mean square error over the runs, shape (r,), m/s."""
         found: Array = np.sqrt(np.mean(self.error**2, axis=0))
         return found
+
+    def consistency(self, start: float, end: float) -> Consistency:
+        """Judge the filter's own claims from `start` to `end`, s after the launch."""
+        part = (self.t >= start) & (self.t <= end)
+        return judge(self.error[:, part], self.sd[:, part], self.nis[:, part], self.innovation[:, part])
 
     def ratio(self, start: float, end: float) -> float:
         """RMSE over the bound's root mean square, from `start` to `end`, s after the launch."""
@@ -246,7 +255,7 @@ def run(settings: MatchedSettings, drawn: Drawn | None = None, told: Callable[[f
         rows.append(_run_one(settings, drawn, i))
         if told is not None:
             told((i + 1) / settings.runs)
-    table = np.array(rows)  # (m, r, 4)
+    table = np.array(rows)  # (m, r, 6)
     s = drawn.schedule
     kept = s.told > REST + LATENCY
     truth = _at(drawn.courses.t, drawn.courses.airspeed, s.told[kept])
@@ -262,13 +271,14 @@ def run(settings: MatchedSettings, drawn: Drawn | None = None, told: Callable[[f
         error=table[:, :, 0] - truth,
         sd=table[:, :, 1],
         raw_error=table[:, :, 2] - truth,
-        nis=table[:, :, 3],
+        nis=table[:, :, 3:5],
+        innovation=table[:, :, 5],
         bound=bound[-int(kept.sum()) :],
     )
 
 
-def _run_one(settings: MatchedSettings, drawn: Drawn, i: int) -> list[tuple[float, float, float, float]]:
-    """Return airspeed, its standard deviation, the raw airspeed and both NIS together, at the times told in flight."""
+def _run_one(settings: MatchedSettings, drawn: Drawn, i: int) -> list[tuple[float, ...]]:
+    """Return airspeed, its deviation, raw airspeed, both NIS and the innovation at the times told in flight."""
     estimator = AidedFilter(settings.estimator, settings.noise(), COVERED)
     forces = zip(drawn.courses.t.tolist(), drawn.force_read[i].tolist(), strict=True)
     s = drawn.schedule
@@ -276,7 +286,7 @@ def _run_one(settings: MatchedSettings, drawn: Drawn, i: int) -> list[tuple[floa
         s.told.tolist(), drawn.total[i].tolist(), drawn.static[i].tolist(), s.total_end.tolist(),
         s.static_end.tolist(), strict=True,
     )  # fmt: skip
-    found = []
+    found: list[tuple[float, ...]] = []
     t, f = next(forces)
     launch = REST + LATENCY
     for told, total, static, total_end, static_end in rows:
@@ -287,5 +297,7 @@ def _run_one(settings: MatchedSettings, drawn: Drawn, i: int) -> list[tuple[floa
             t, f = next(forces, (np.inf, 0.0))
         estimate = estimator.step(told, total, static, STANDARD_TEMPERATURE, total_end, static_end)
         if told > launch and estimate is not None:
-            found.append((estimate[1], estimate[2], estimate[3], estimate[7] + estimate[8]))
+            _, speed, sd, raw, _, _, _, nis_total, nis_static = estimate
+            innovation = copysign(sqrt(nis_total), estimator.energy.innovation)
+            found.append((speed, sd, raw, nis_total, nis_static, innovation))
     return found

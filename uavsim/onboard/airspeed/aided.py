@@ -38,13 +38,14 @@ ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
 TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
 VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
-PATIENCE = 1.0  # s after the recognition; then total pressures are taken all the same
+PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
+PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
 GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
 OLDEST = 0.05  # s; a reading that is further behind the filter is not taken
 ALONE = 0.02  # s; a static pressure so far ahead of the filter comes without a total pressure: it goes on by itself
 SLOWEST = 1.0  # m/s; below it the gust's correlation time is that of this airspeed
-ANYWHERE = 1e3  # Pa; what a static pressure is off by before one has been read
+ANYWHERE, AROUND = 3e4, 1e3  # Pa; what the static pressure may be off by before one has been read, and after
 
 Row = tuple[float, float, float, float, float, float]
 
@@ -73,10 +74,11 @@ class AidedFilter:
 
     aided = True
     __slots__ = (
-        "_density", "_force", "_gained", "_gas", "_gust", "_heat", "_held", "_held_count", "_noise", "_on_rail",
-        "_patience", "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings", "_settled",
-        "_static_age", "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature",
-        "_temperature_share", "_total_age", "_total_variance", "_u", "_w", "_waiting", "energy", "flying", "time",
+        "_density", "_force", "_gained", "_gas", "_gust", "_heat", "_held", "_held_count", "_measured", "_misses",
+        "_noise", "_on_rail", "_patience", "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings",
+        "_settled", "_static_age", "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end",
+        "_temperature", "_temperature_share", "_total_age", "_total_variance", "_u", "_w", "_waiting", "energy",
+        "flying", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -102,7 +104,7 @@ class AidedFilter:
         self.time = self._t = self._t_total = self._t_static = -inf
         self._temperature = self._density = self._gas = self._heat = nan
         self._tare = 0.0
-        self._settled, self._patience = False, inf
+        self._settled, self._patience, self._misses = False, inf, 0
         self._u = self._w = 0.0
         self.energy = self._begin(-inf)
 
@@ -152,7 +154,8 @@ class AidedFilter:
         known = 0.0 < static < inf
         self._tare, tare_variance = self._waiting.tare()
         warm = self._waiting.temperature
-        self._warm(warm if warm > 0.0 else airdata.STANDARD_TEMPERATURE)
+        self._measured = warm > 0.0
+        self._warm(warm if self._measured else airdata.STANDARD_TEMPERATURE)
         rest, rest_sd = self._rest.result(start)
         return EnergyFilter(
             speed_sd=self._settings.wind_sd,
@@ -163,7 +166,7 @@ class AidedFilter:
             slope_rate=aided.slope_rate,
             slope_time=aided.slope_time,
             static=static if known else airdata.STANDARD_PRESSURE,
-            static_sd=ANYWHERE,
+            static_sd=AROUND if known else ANYWHERE,
             static_walk=aided.static_walk,
             difference_sd=sqrt(tare_variance),
             difference_walk=noise.walk,
@@ -182,6 +185,7 @@ class AidedFilter:
         if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
             if temperature != self._temperature:
                 self._warm(temperature)
+            self._measured = True
         else:
             temperature = nan
         self._density = energy.p / self._gas
@@ -230,7 +234,12 @@ class AidedFilter:
         ahead = self.time - at
         if not (0.0 < reading < inf and -OLDEST < ahead < OLDEST):
             return nan
-        return energy.static(reading, self._static_variance, self._density * energy.v * ahead)
+        nis = energy.static(reading, self._static_variance, self._density * energy.v * ahead)
+        self._misses = 0 if energy.taken else self._misses + 1
+        if self._misses >= PERSISTENT:  # no spike: the port itself is in other air
+            energy.pp += energy.innovation * energy.innovation
+            self._misses = 0
+        return nis
 
     def _take_total(self, reading: float, end: float) -> float:
         energy = self.energy
@@ -238,10 +247,8 @@ class AidedFilter:
         behind = self.time - (end - self._total_age)
         if behind > OLDEST:
             return nan
-        if not self._settled:
-            if energy.v * energy.v < ONE_SIDED * energy.vv and self.time < self._patience:
-                return nan
-            self._settled = True
+        if not self._settled and not self._settle(reading):
+            return nan
         before, pushed = self._held, self._push(end - noise.total_lag)
         energy.bb += self._scale_variance * abs(pushed * pushed - before * before)
         variance = self._total_variance
@@ -250,6 +257,18 @@ class AidedFilter:
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * self._gust * abs(energy.v) * behind
         return energy.total(reading - self._tare - noise.acceleration * pushed, variance, pushed, self._heat)
+
+    def _settle(self, reading: float) -> bool:
+        """Whether the push has brought V far enough from 0 for a total pressure; if it never does, take V from that."""
+        energy = self.energy
+        if energy.v * energy.v < ONE_SIDED * energy.vv:
+            if self.time < self._patience:
+                return False
+            excess = max(0.0, (reading - self._tare - energy.p) / energy.p)
+            speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
+            energy.restart(speed, max(energy.vv, speed * speed / ONE_SIDED))
+        self._settled = True
+        return True
 
     def _push(self, end: float) -> float:
         """Mean specific force above that at rest over the total pressure's conversion, m/s².
@@ -286,7 +305,7 @@ class AidedFilter:
         if speed < 0.0:  # noqa: PLR1730
             speed = 0.0
         share = self._temperature_share * speed / self._temperature
-        sd = sqrt(variance + share * share)
+        sd = sqrt(max(variance, 0.0) + share * share)
         y = 1.0 + speed * speed / self._heat
         total = static * y * y * y * sqrt(y)
-        return t, speed, sd, raw, total, static, speed >= VALID * sd, nis_total, nis_static
+        return t, speed, sd, raw, total, static, speed >= VALID * sd and self._measured, nis_total, nis_static

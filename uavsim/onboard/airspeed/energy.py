@@ -28,6 +28,7 @@ from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 
 SEVEN_R = 7.0 * GAS_CONSTANT_DRY_AIR  # J/(kg·K): 2·c_p, V²/(7·R·T) = (γ − 1)/2·M²
 CURVED = 0.01  # (h''·P)² over the reading's variance from which on the slope is looked for anew
+GATE = 25.0  # NIS; a reading beyond it, one in two million of the Gaussian ones, is a spike or a fault and not taken
 ITERATIONS = 4  # Newton's; the third is below a hundredth of the deviation from V = 3 σ_V on
 RAIL_SHARE = 1e-4  # of the variance that slope and bias gain in flight, on the rail: none, but for a regular matrix
 
@@ -58,12 +59,16 @@ class EnergyFilter:
         The state.
     vv, vb, … kk : float
         Its covariance.
+    innovation : float
+        The last one, Pa.
+    taken : bool
+        Whether the last reading was within the gate of five standard deviations.
     """
 
     __slots__ = (
         "_bias_density", "_bias_time", "_difference_density", "_slope_density", "_slope_time", "_static_density", "b",
-        "bb", "bd", "bk", "bp", "bs", "d", "dd", "dk", "k", "kk", "p", "pd", "pk", "pp", "ps", "s", "sd", "sk", "ss",
-        "v", "vb", "vd", "vk", "vp", "vs", "vv",
+        "bb", "bd", "bk", "bp", "bs", "d", "dd", "dk", "innovation", "k", "kk", "p", "pd", "pk", "pp", "ps", "s", "sd",
+        "sk", "ss", "taken", "v", "vb", "vd", "vk", "vp", "vs", "vv",
     )  # fmt: skip
 
     def __init__(
@@ -87,7 +92,8 @@ class EnergyFilter:
         self._slope_density, self._slope_time = slope_rate**2, slope_time
         self._static_density = static_walk**2
         self._difference_density = difference_walk**2
-        self.v = self.b = self.d = self.k = 0.0
+        self.v = self.b = self.d = self.k = self.innovation = 0.0
+        self.taken = True
         self.s, self.p = rest_force, static
         self.vb = self.vp = self.vs = self.vd = self.vk = self.bp = self.bd = self.bk = 0.0
         self.ps = self.pd = self.pk = self.sd = self.sk = self.dk = 0.0
@@ -153,6 +159,11 @@ class EnergyFilter:
         self.pp += c * c * slope / 3.0
         self.sd, self.sk = stay * sd, stay * sk
         self.ss = stay * stay * ss + slope
+
+    def restart(self, speed: float, variance: float) -> None:
+        """Forget the airspeed for another, m/s, of the given variance, m²/s²."""
+        self.v, self.vv = speed, variance
+        self.vb = self.vp = self.vs = self.vd = self.vk = 0.0
 
     def static(self, reading: float, variance: float, ahead: float) -> float:
         """Take a static pressure.
@@ -236,6 +247,9 @@ class EnergyFilter:
             if not step:
                 bend = curvature * self.vv
                 nis = (innovation - 0.5 * bend) ** 2 / (spread + 0.5 * bend * bend)
+                if nis > GATE:
+                    self.innovation, self.taken = innovation - 0.5 * bend, False
+                    return nis
             left = self.vv - gv * gv / spread
             if left > 0.0:  # what h bends over the deviation that stays
                 bend = curvature * left
@@ -252,6 +266,11 @@ class EnergyFilter:
         self, innovation: float, spread: float, gv: float, gb: float, gp: float, gs: float, gd: float, gk: float
     ) -> float:
         """Correct by an innovation of variance `spread`; g… is its covariance with the state."""
+        self.innovation = innovation
+        nis = innovation * innovation / spread
+        self.taken = nis <= GATE
+        if not self.taken:
+            return nis
         kv, kb, kp, ks, kd, kk = gv / spread, gb / spread, gp / spread, gs / spread, gd / spread, gk / spread
         self.v += kv * innovation
         self.b += kb * innovation
@@ -280,4 +299,4 @@ class EnergyFilter:
         self.dd -= kd * gd
         self.dk -= kd * gk
         self.kk -= kk * gk
-        return innovation * innovation / spread
+        return nis

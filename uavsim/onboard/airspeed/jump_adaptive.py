@@ -1,6 +1,6 @@
 """Pressures that stand still for a while and then move: a random walk whose filter opens when innovations say so.
 
-Between changes the filter of a constant averages: Q is as good as 0 and K falls as 1/n. A change shows as innovations
+Between changes the filter averages: Q is small and K falls as 1/n until it settles. A change shows as innovations
 of one sign. Two CUSUMs (Page 1954) watch the innovation over its standard deviation, ν,
 
     S₊ = max(0, S₊ + ν − κ),    S₋ = max(0, S₋ − ν − κ)
@@ -19,7 +19,7 @@ from uavsim.onboard.airspeed.settings import EstimatorSettings
 
 DRIFT = 0.5  # κ, standard deviations
 LEVEL = 5.0  # h: with κ = 1/2 in white noise once in 465 readings a side
-GROWTH = 1e-5  # Q/R of the closed filter
+GROWTH = 3e-4  # Q/R of the closed filter: it averages over some 60 readings
 
 
 class JumpChannel:
