@@ -395,10 +395,29 @@ def test_what_is_written(tmp_path):
         rows = list(csv.DictReader(file))
     assert len(rows) == len(found.total) + len(found.static)
     assert float(rows[0]["rms_calibrated"]) == found.total[0].constant
+    raw = [float(row["rms_raw"]) for row in sorted(rows[-len(found.static) :], key=lambda row: int(row["rank_raw"]))]
+    assert raw == sorted(raw)
     scenario = load_scenario(str(folder / "position_error.toml"))
     assert scenario.air_data.static_port.error == found.polynomial.terms[0][0]
     assert scenario.air_data.total_port.probe == "plain"
     assert (folder / "map.png").stat().st_size > 20_000
+
+
+def test_a_flight_with_the_named_port_errs_as_the_survey_says(tmp_path):
+    """`position_error.toml` flown with ideal sensors: the raw airspeed of the cruise is off by −c_s/2, to 0.05 m/s."""
+    found = surveyed()
+    view.save(found, tmp_path / "out", overwrite=False, plots=False)
+    quiet = [f"air_data.{port}.{key}" for port in ("total", "static") for key in ('unit="ideal"', "noise_scale=0")]
+    flight = uavsim.fly(str(tmp_path / "out" / "position_error.toml"), seed=1, overrides=["duration=12", *quiet])
+    truth, estimate = flight.truth, flight.estimate
+    cruise = estimate[estimate["t"] > flight.score["flight"]["wing_out_time"] + 2.5]
+    t = cruise["t"].to_numpy()
+    true, alpha, beta, mach = (np.interp(t, truth["t"], truth[key]) for key in ("airspeed", "alpha", "beta", "mach"))
+    share = choose(found.static).place.share(alpha, beta, mach)
+    expected = true * (airspeed_ratio(1.0 - share, mach) - 1.0)
+    error = cruise["airspeed_raw"].to_numpy() - true
+    assert np.mean(expected) < -0.3
+    assert np.mean(error) == pytest.approx(np.mean(expected), abs=0.05)
 
 
 def test_the_table_holds_the_shares(tmp_path):

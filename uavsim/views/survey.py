@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 LISTED = 8  # places of each role that are printed and numbered on the map
 COLUMNS = (
-    "role", "rank", "place", "part", "kind", "x", "y", "z", "share_mean", "share_least", "share_most",
+    "role", "rank", "rank_raw", "place", "part", "kind", "x", "y", "z", "share_mean", "share_least", "share_most",
     "rms_raw", "rms_calibrated", "rms_calibrated_angles", "rms_worst_phase", "available", "share_per_mm", "caveat",
 )  # fmt: skip
 
@@ -92,7 +92,7 @@ def summary(found: Survey) -> dict[str, Any]:
 
 
 def _rank(each: Rank) -> dict[str, Any]:
-    return dict(zip(COLUMNS[2:], _cells(each), strict=True))
+    return dict(zip(COLUMNS[3:], _cells(each), strict=True))
 
 
 def _cells(each: Rank) -> list[Any]:
@@ -104,11 +104,13 @@ def _cells(each: Rank) -> list[Any]:
 
 
 def _rows(found: Survey) -> list[list[Any]]:
-    return [
-        [role, number, *("" if cell is None else cell for cell in _cells(each))]
-        for role, ranks in (("total", found.total), ("static", found.static))
-        for number, each in enumerate(ranks, start=1)
-    ]
+    """Return the places by role and rank: calibrated once, and as they are."""
+    rows = []
+    for role, ranks in (("total", found.total), ("static", found.static)):
+        raw = {id(each): k for k, each in enumerate(sorted(ranks, key=lambda each: each.raw), start=1)}
+        for number, each in enumerate(ranks, start=1):
+            rows.append([role, number, raw[id(each)], *("" if cell is None else cell for cell in _cells(each))])
+    return rows
 
 
 def _coefficients(found: Survey) -> dict[str, float]:
