@@ -59,21 +59,24 @@ def test_the_packaged_scenario_flies_the_best_filter(best: list[Flight]) -> None
 
 @pytest.mark.parametrize(("channel", "printed"), [("total", 18.26), ("static", 22.08)])
 def test_the_papers_gain_reproduces_table_7(paper: list[Flight], channel: str, printed: float) -> None:
-    """Within 0.5 points of what is printed; single runs spread by 0.3, so 0.4 points beyond the edge are caught."""
+    """Within 0.5 points of what is printed; single runs spread by 0.17, so 0.15 points beyond are caught."""
     low, high = band(np.array([figure(f, f"pressure.{channel}.reduction_percent") for f in paper]))
     assert printed - 0.5 < low
     assert high < printed + 0.5
 
 
 def test_the_best_causal_filter_takes_at_least_68_percent(best: list[Flight]) -> None:
-    """60 % is the aim, 68 % the stretch; single runs spread by 4, so 3.5 points below either are caught."""
+    """60 % is the aim, 68 % the stretch; single runs spread by 3.2, so 2.8 points below either are caught."""
     reductions = np.array([figure(f, "airspeed.reduction_percent") for f in best])
     assert least(reductions) > 68.0
     assert reductions.min() > 60.0
 
 
 def test_on_fast_plateaus_it_takes_at_least_85_percent(best: list[Flight]) -> None:
-    """Levels of 10 m/s and more, from five time constants after their step; per run, all levels pooled."""
+    """Levels of 10 m/s and more, from five time constants after their step; per run, all levels pooled.
+
+    Single runs spread by 1.5 points, so 1.3 points below are caught.
+    """
     reductions = []
     for f in best:
         found = tunnel.plateaus({tunnel.BEST: [f]})
@@ -92,10 +95,10 @@ def test_no_filter_does_better_than_who_knows_the_steps(best: list[Flight]) -> N
 
 
 def steady_bias(flight: Flight) -> float:
-    """Mean error from 10 s after the start of the tunnel on, % of the airspeed."""
+    """Mean error from 5 s after the end of the ramp on, % of the airspeed."""
     t = flight.estimate["t"].to_numpy()
     true = np.interp(t, flight.truth["t"].to_numpy(), flight.truth["airspeed"].to_numpy())
-    late = t > flight.score["launch"]["release_time"] + 10.0
+    late = t > flight.score["launch"]["release_time"] + flight.scenario["plant"]["wind_tunnel"]["ramp"] + 5.0
     return float(100.0 * np.mean(flight.estimate["airspeed"].to_numpy()[late] / true[late] - 1.0))
 
 
