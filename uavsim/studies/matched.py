@@ -238,7 +238,12 @@ class Matched:
         return float(np.sqrt(np.mean(self.error[:, part] ** 2) / np.mean(self.bound[part] ** 2)))
 
 
-def run(settings: MatchedSettings, drawn: Drawn | None = None, told: Callable[[float], None] | None = None) -> Matched:
+def run(
+    settings: MatchedSettings,
+    drawn: Drawn | None = None,
+    told: Callable[[float], None] | None = None,
+    kind: type[AidedFilter] = AidedFilter,
+) -> Matched:
     """Fly the filter through an ensemble.
 
     Parameters
@@ -248,11 +253,13 @@ def run(settings: MatchedSettings, drawn: Drawn | None = None, told: Callable[[f
         Drawn before with the same settings.
     told : callable, optional
         Called with the share that is done.
+    kind : type
+        `AidedFilter`, or a reference that stands in for it.
     """
     drawn = draw(settings) if drawn is None else drawn
     rows = []
     for i in range(settings.runs):
-        rows.append(_run_one(settings, drawn, i))
+        rows.append(fly_one(settings, drawn, i, kind(settings.estimator, settings.noise(), COVERED)))
         if told is not None:
             told((i + 1) / settings.runs)
     table = np.array(rows)  # (m, r, 6)
@@ -277,9 +284,8 @@ def run(settings: MatchedSettings, drawn: Drawn | None = None, told: Callable[[f
     )
 
 
-def _run_one(settings: MatchedSettings, drawn: Drawn, i: int) -> list[tuple[float, ...]]:
-    """Return airspeed, its deviation, raw airspeed, both NIS and the innovation at the times told in flight."""
-    estimator = AidedFilter(settings.estimator, settings.noise(), COVERED)
+def fly_one(settings: MatchedSettings, drawn: Drawn, i: int, estimator: AidedFilter) -> list[tuple[float, ...]]:
+    """Fly run `i`; return airspeed, its deviation, raw airspeed, both NIS and the innovation at each time told."""
     forces = zip(drawn.courses.t.tolist(), drawn.force_read[i].tolist(), strict=True)
     s = drawn.schedule
     rows = zip(

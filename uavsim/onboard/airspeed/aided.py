@@ -73,6 +73,7 @@ class AidedFilter:
     """
 
     aided = True
+    core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
         "_density", "_force", "_gained", "_gas", "_gust", "_heat", "_held", "_held_count", "_measured", "_misses",
         "_noise", "_on_rail", "_patience", "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings",
@@ -157,7 +158,7 @@ class AidedFilter:
         self._measured = warm > 0.0
         self._warm(warm if self._measured else airdata.STANDARD_TEMPERATURE)
         rest, rest_sd = self._rest.result(start)
-        return EnergyFilter(
+        return self.core(
             speed_sd=self._settings.wind_sd,
             rest_force=rest,
             rest_sd=rest_sd,
