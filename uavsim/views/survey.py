@@ -214,9 +214,9 @@ def save_pressures(found: Survey, path: Path) -> None:
     for axes, part in zip(grid[0], ("fuselage", "wing"), strict=True):
         for curve in (each for each in curves(found.outline, found.source) if each.part == part):
             x, cp = np.array(curve.x), np.array(curve.cp)
-            if part == "fuselage":  # a gap where the wing is
-                cut = int(np.argmax(np.diff(x))) + 1
-                x, cp = np.insert(x, cut, np.nan), np.insert(cp, cut, np.nan)
+            far = 0.5 * found.outline.wing.root_chord if part == "fuselage" else 1.0
+            gaps = np.flatnonzero(np.diff(x) > far) + 1
+            x, cp = (np.insert(column, gaps, np.nan) for column in (x, cp))
             colour = next(colours[key] for key in colours if curve.name.startswith(key))
             dashed = "--" if "90 %" in curve.name else "-"
             axes.plot(x, cp, color=colour, linestyle=dashed, linewidth=1.3, label=curve.name)

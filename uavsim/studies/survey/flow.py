@@ -114,24 +114,37 @@ class AircraftFlow:
 
     def tube_at_nose(self) -> Share:
         """Tube on the axis, its mouth a pipe's length ahead of the nose."""
-        along, _, _, across = self.body().off_axis(self.outline.stations[0] - PIPE, 0.0)
+        velocity = self._ahead_of_nose(PIPE)
 
         def share(alpha: Array, beta: Array, _mach: Array) -> Array:
-            sideways = np.hypot(np.sin(alpha) * np.cos(beta), np.sin(beta)) * across
-            return recovered(np.arctan2(sideways, np.cos(alpha) * np.cos(beta) * along))
+            along, sideways = velocity(alpha, beta)
+            return recovered(np.arctan2(sideways, along))
 
         return share
 
     def boom_at_nose(self, distance: float) -> Share:
         """Static holes on a boom, `distance` ahead of the nose, m."""
-        along, _, _, across = self.body().off_axis(self.outline.stations[0] - distance, 0.0)
+        velocity = self._ahead_of_nose(distance)
 
         def share(alpha: Array, beta: Array, mach: Array) -> Array:
-            ahead = np.cos(alpha) * np.cos(beta) * speed_ratio(along, mach)
-            sideways = np.hypot(np.sin(alpha) * np.cos(beta), np.sin(beta)) * across
-            return np.asarray(impact_share_of(ahead**2 + 2.0 * sideways**2, mach))
+            along, sideways = velocity(alpha, beta)
+            return np.asarray(impact_share_of(speed_ratio(along, mach) ** 2 + 2.0 * sideways**2, mach))
 
         return share
+
+    def _ahead_of_nose(self, distance: float) -> Callable[[Array, Array], tuple[Array, Array]]:
+        """Velocity on the axis ahead of the nose, along and across it: α, β -> shares of the stream's."""
+        x = self.outline.stations[0] - distance
+        along, _, _, across = self.body().off_axis(x, 0.0)
+        line = self.wing_line
+        gained, raised = line.induced(x, 0.0, 0.0, line.zero_lift + 1.0)
+
+        def velocity(alpha: Array, beta: Array) -> tuple[Array, Array]:
+            lift = alpha - line.zero_lift
+            ahead = (np.cos(alpha) * np.cos(beta) + gained * lift) * along
+            return ahead, np.hypot(np.sin(alpha) * np.cos(beta) + raised * lift, np.sin(beta)) * across
+
+        return velocity
 
     # -- wing, tail, fin
 

@@ -14,6 +14,9 @@ from typing import Any
 from uavsim.plants.hangar import aircraft, hangar
 from uavsim.studies.survey.section import naca_four_digit
 
+LARGEST = 100.0  # m; no UAV is larger
+MOST_INCIDENCE = 30.0  # deg
+
 
 @dataclass(frozen=True, slots=True)
 class Surface:
@@ -190,6 +193,9 @@ def _number(group: Mapping[str, Any], key: str, default: float | None = None) ->
     value = group.get(key.split(".")[1], default)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
         raise ValueError(f"{key}: must be a number")
+    most = MOST_INCIDENCE if key.endswith("_deg") else LARGEST
+    if abs(value) > most:
+        raise ValueError(f"{key}: must be from -{most:g} to {most:g}")
     return float(value)
 
 
@@ -203,9 +209,9 @@ def _positive(group: Mapping[str, Any], key: str) -> float:
 def _column(group: Mapping[str, Any], key: str) -> tuple[float, ...]:
     value = group.get(key.split(".")[1])
     if not isinstance(value, list) or any(
-        isinstance(each, bool) or not isinstance(each, (int, float)) or not isfinite(each) for each in value
+        isinstance(each, bool) or not isinstance(each, (int, float)) or not abs(each) <= LARGEST for each in value
     ):
-        raise ValueError(f"{key}: must be a list of numbers")
+        raise ValueError(f"{key}: must be a list of numbers, each from -{LARGEST:g} to {LARGEST:g}")
     return tuple(float(each) for each in value)
 
 

@@ -140,8 +140,8 @@ def naca_four_digit(name: str) -> tuple[float, float, float]:
     (0.04, 0.4, 0.12)
     """
     match = re.fullmatch(r"naca ?(\d)(\d)(\d\d)", name.strip().lower())
-    if match is None or match[3] == "00" or (match[1] != "0" and match[2] == "0"):
-        raise ValueError(f"{name!r}: four-digit NACA sections are known here, as naca4412")
+    if match is None or not 4 <= int(match[3]) <= 30 or (match[1] != "0" and match[2] == "0"):
+        raise ValueError(f"{name!r}: four-digit NACA sections of 4 to 30 % thickness are known here, as naca4412")
     return int(match[1]) / 100.0, int(match[2]) / 10.0, int(match[3]) / 100.0
 
 
