@@ -75,7 +75,7 @@ def summary(found: Survey) -> dict[str, Any]:
         },
         "named": {
             "total": _rank(total), "static": _rank(static),
-            "total_hole": _rank(choose(found.total, "hole")), "static_hole": _rank(choose(found.static, "hole")),
+            "total_hole": _hole(found.total), "static_hole": _hole(found.static),
             "pair": {"rms_raw": raw, "rms_calibrated": calibrated},
         },
         "position_error": {
@@ -89,6 +89,11 @@ def summary(found: Survey) -> dict[str, Any]:
         else {f"{place:+g}": value for place, value in found.cross_check.items()},
         "paper_case": {**found.paper, "over_the_flights": _over_the_flights(found)},
     }  # fmt: skip
+
+
+def _hole(ranks: list[Rank]) -> dict[str, Any] | None:
+    """Return the best place flush with the surface, None if there is none."""
+    return _rank(choose(ranks, "hole")) if any(each.place.kind == "hole" for each in ranks) else None
 
 
 def _rank(each: Rank) -> dict[str, Any]:
@@ -166,8 +171,10 @@ def lines(found: Survey) -> list[str]:
         "",
     ]
     for role, ranks in (("total", found.total), ("static", found.static)):
-        best, hole = choose(ranks), choose(ranks, "hole")
-        also = "" if best is hole else f"; flush with the surface: {hole.place.name}, {_figures(hole)}"
+        best, also = choose(ranks), ""
+        if best.place.kind != "hole" and _hole(ranks) is not None:
+            flush = choose(ranks, "hole")
+            also = f"; flush with the surface: {flush.place.name}, {_figures(flush)}"
         said.append(f"{role} port: {best.place.name}, {_figures(best)}{also}")
     raw, calibrated = pair_error(choose(found.total).place, choose(found.static).place, e)
     said.append(f"both together: {raw:.2f} m/s rms, calibrated once {calibrated:.2f}")

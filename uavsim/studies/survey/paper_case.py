@@ -111,7 +111,7 @@ def paper_case(outline: Outline, source: str) -> dict[str, Any]:
     rest = [each for each in read if not each.name.endswith(FRONT)]
     aft = [each for each in read if each.name.endswith("95 % of chord")]
     sides = [each for each in rest if not each.name.endswith("95 % of chord")]
-    holds = min(each.pressure for each in front) > max(each.pressure for each in rest)
+    holds = min(each.pressure for each in front) > max((each.pressure for each in rest), default=PRESSURE)
     return {
         "mach": MACH, "temperature": TEMPERATURE, "p_static": PRESSURE, "alpha_deg": 1.0,
         "p_total": total, "impact_pressure": total - PRESSURE, "critical_cp": critical_coefficient(MACH),
