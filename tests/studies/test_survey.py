@@ -268,6 +268,19 @@ def test_pressures_are_those_of_a_stream_about_the_aircraft():
     assert upper(angle, ZERO, mach) < -0.5 < lower(angle, ZERO, mach)
 
 
+def test_a_folded_wing_induces_nothing():
+    """With the wing folded a body of revolution reads alike on top and bottom at no angle; with it out it does not."""
+    bottom, top = (
+        next(p for p in places(AircraftFlow(read_outline("fw8"))) if p.name == f"fuselage at 300 mm, {side}")
+        for side in ("bottom", "top")
+    )
+    at = (ZERO, ZERO, np.array(0.1))
+    assert bottom.share(*at, False) == pytest.approx(top.share(*at, False), rel=1e-9)
+    assert bottom.share(*at) > top.share(*at) + 0.01
+    mixed = top.share(np.zeros(2), np.zeros(2), np.full(2, 0.1), np.array([True, False]))
+    assert mixed.tolist() == pytest.approx([float(top.share(*at)), float(top.share(*at, False))], rel=1e-12)
+
+
 def test_booms_ahead_of_a_fuselage_read_what_flight_tests_found():
     """Static error 1 diameter ahead of a nose +0.03…+0.05, 1.5 diameters +0.02: typical figures handed down, ±0.01."""
     boom = {p.name: p for p in places(AircraftFlow(read_outline("fw8")))}
@@ -309,7 +322,7 @@ def test_the_error_of_a_place_is_that_of_flying_with_it():
     e, each = found.envelope, choose(found.static)
     total = airdata.total_pressure(static=e.static, mach=e.mach)
     head = total - e.static
-    read = e.static + head * each.place.share(e.alpha, e.beta, e.mach)
+    read = e.static + head * each.place.share(e.alpha, e.beta, e.mach, e.wing_out)
     number = airdata.mach(total=total - read + e.static, static=e.static)
     error = e.airspeed * (number / e.mach - 1.0)
     assert math.sqrt(np.sum(e.weight * error**2)) == pytest.approx(each.raw, rel=1e-9)

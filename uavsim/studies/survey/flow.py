@@ -9,7 +9,7 @@ Fuselage: flow of `body` in axial and in cross flow, and the velocity that the w
 flow of `section` at the angle of attack of `lifting_line`, in the plane across the span, the flow along the span apart
 (a simple sweep); the fuselage's own upwash at the wing is α·R²/y², the wing's downwash at the tail that of its
 horseshoes. Not in it: viscosity but for NeuralFoil's edge speed, wakes, the propeller, deflected tail halves, the
-junction of wing and fuselage, the wing folded and on its way out.
+junction of the wing's panels folded back and on their way out.
 """
 
 from collections.abc import Callable
@@ -50,12 +50,15 @@ class AircraftFlow:
         Largest Mach number that will be asked for, below 0.9.
     speed : float
         Airspeed of the sections' Reynolds numbers, m/s.
+    wing_out : bool
+        Whether the wing is out and works on the flow elsewhere.
     """
 
     outline: Outline
     source: str = "panels"
     most_mach: float = 0.3
     speed: float = 30.0
+    wing_out: bool = True
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.most_mach <= MACHS[-1]:
@@ -86,8 +89,13 @@ class AircraftFlow:
         """Of the wing at the tailplane's middle, velocity up per rad of the wing's α − α₀ (negative)."""
         tail = self.outline.tail
         assert tail is not None
-        place = tail.quarter_chord, 0.5 * (tail.root + tail.tip), tail.z
-        return self.wing_line.induced(*place, self.wing_line.zero_lift + 1.0)[1]
+        return self._induced(tail.quarter_chord, 0.5 * (tail.root + tail.tip), tail.z)[1]
+
+    def _induced(self, x: float, y: float, z: float) -> tuple[float, float]:
+        """Velocity that the wing induces, along x and up, per rad of its α − α₀; none when it is folded."""
+        if not self.wing_out:
+            return 0.0, 0.0
+        return self.wing_line.induced(x, y, z, self.wing_line.zero_lift + 1.0)
 
     # -- fuselage
 
@@ -96,9 +104,9 @@ class AircraftFlow:
         axial, t, w = self.body().at(x)
         thin = np.array([self.body(mach).axial_at(x) for mach in self._machs])
         radius = self.outline.radius(x)
-        line, one = self.wing_line, self.wing_line.zero_lift + 1.0
-        gained = line.induced(x, radius * np.sin(azimuth), radius * np.cos(azimuth), one)[0]
-        raised = line.induced(x, 0.0, 0.0, one)[1]
+        line = self.wing_line
+        gained = self._induced(x, radius * np.sin(azimuth), radius * np.cos(azimuth))[0]
+        raised = self._induced(x, 0.0, 0.0)[1]
 
         def share(alpha: Array, beta: Array, mach: Array) -> Array:
             lift = alpha - line.zero_lift
@@ -137,7 +145,7 @@ class AircraftFlow:
         x = self.outline.stations[0] - distance
         along, _, _, across = self.body().off_axis(x, 0.0)
         line = self.wing_line
-        gained, raised = line.induced(x, 0.0, 0.0, line.zero_lift + 1.0)
+        gained, raised = self._induced(x, 0.0, 0.0)
 
         def velocity(alpha: Array, beta: Array) -> tuple[Array, Array]:
             lift = alpha - line.zero_lift

@@ -1,7 +1,8 @@
 """The places on an aircraft where a head could be mounted."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 from math import pi
 from typing import Literal
 
@@ -43,6 +44,8 @@ class Place:
         Of the place, or the right one of a pair, m, structural frame.
     shares : tuple of Share
         Of the holes whose mean pressure it reads.
+    folded : tuple of Share
+        The same with the wing folded; empty if it makes no difference.
     folds : bool
         In the stream only when the wing is out.
     caveat : str
@@ -60,11 +63,16 @@ class Place:
     folds: bool = False
     caveat: str = ""
     shifted: tuple[Share, ...] = ()
+    folded: tuple[Share, ...] = ()
 
-    def share(self, alpha: Array, beta: Array, mach: Array) -> Array:
-        """(p − p_s)/q_c of the mean of its holes, of angles in rad and the Mach number."""
-        alpha, beta, mach = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (alpha, beta, mach)))
-        return np.asarray(np.mean([share(alpha, beta, mach) for share in self.shares], axis=0))
+    def share(self, alpha: Array, beta: Array, mach: Array, wing_out: NDArray[np.bool_] | bool = True) -> Array:
+        """(p − p_s)/q_c of the mean of its holes, of angles in rad, the Mach number and whether the wing is out."""
+        at = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (alpha, beta, mach)))
+        out = np.mean([share(*at) for share in self.shares], axis=0)
+        if not self.folded or np.all(wing_out):
+            return np.asarray(out)
+        folded = np.mean([share(*at) for share in self.folded], axis=0)
+        return np.asarray(np.where(wing_out, out, folded), dtype=float)
 
     def slope(self, alpha: float, beta: float, mach: float) -> float | None:
         """How much the share changes a millimetre along the surface, 1/mm; None where that means nothing."""
@@ -87,14 +95,22 @@ def places(flow: AircraftFlow) -> list[Place]:
 
 def _nose(flow: AircraftFlow) -> Iterator[Place]:
     front, diameter = flow.outline.stations[0], max(flow.outline.diameters)
-    yield Place(
-        "nose, hole at the tip", "nose", "hole", ("total",), (front, 0.0, 0.0), (flow.hole_on_body(front, 0.0),)
-    )
-    yield Place("nose, tube", "nose", "tube", ("total",), (front - PIPE, 0.0, 0.0), (flow.tube_at_nose(),))
+
+    def place(name: str, kind: Kind, role: Role, ahead: float, share: Callable[[AircraftFlow], Share]) -> Place:
+        folded = tuple(share(each) for each in _folded(flow))
+        return Place(name, "nose", kind, (role,), (front - ahead, 0.0, 0.0), (share(flow),), folded=folded)
+
+    yield place("nose, hole at the tip", "hole", "total", 0.0, lambda each: each.hole_on_body(front, 0.0))
+    yield place("nose, tube", "tube", "total", PIPE, AircraftFlow.tube_at_nose)
     for ahead in (0.5, 1.0, 1.5):
-        boom = flow.boom_at_nose(ahead * diameter)
-        name = f"nose, boom {ahead:g} diameters ahead"
-        yield Place(name, "nose", "boom", ("static",), (front - ahead * diameter, 0.0, 0.0), (boom,))
+        distance = ahead * diameter
+        boom = partial(AircraftFlow.boom_at_nose, distance=distance)
+        yield place(f"nose, boom {ahead:g} diameters ahead", "boom", "static", distance, boom)
+
+
+def _folded(flow: AircraftFlow) -> tuple[AircraftFlow, ...]:
+    """Return the flow with the wing folded, if it folds."""
+    return (replace(flow, wing_out=False),) if flow.outline.folding else ()
 
 
 def _fuselage(flow: AircraftFlow) -> Iterator[Place]:
@@ -113,9 +129,11 @@ def _fuselage(flow: AircraftFlow) -> Iterator[Place]:
             holes, moved = (
                 tuple(flow.hole_on_body(station, azimuth) for azimuth in azimuths) for station in (x, x + SHIFT)
             )
-            label = f"fuselage at {1e3 * x:.0f} mm, {name}"
-            caveat = BEHIND_WING if x > outline.wing.quarter_chord else ""
-            yield Place(label, "fuselage", "hole", ("static",), position, holes, caveat=caveat, shifted=moved)
+            folded = tuple(each.hole_on_body(x, azimuth) for each in _folded(flow) for azimuth in azimuths)
+            yield Place(
+                f"fuselage at {1e3 * x:.0f} mm, {name}", "fuselage", "hole", ("static",), position, holes,
+                caveat=BEHIND_WING if x > outline.wing.quarter_chord else "", shifted=moved, folded=folded,
+            )  # fmt: skip
 
 
 def at_wing(outline: Outline, x: float) -> bool:

@@ -77,7 +77,7 @@ def rank(place: Place, role: Role, envelope: Envelope) -> Rank | None:
         return None
     at = envelope.alpha[used], envelope.beta[used], envelope.mach[used]
     weight = envelope.weight[used] / available
-    share = place.share(*at)
+    share = place.share(*at, envelope.wing_out[used])
     kept = share if role == "total" else 1.0 - share  # of q_c, where the other place is perfect
     fitted = Polynomial.fit(kept, POWERS, alpha=at[0], beta=at[1], mach=at[2], weights=weight)
     speed, mach = envelope.airspeed[used], at[2]
@@ -120,7 +120,8 @@ def pair_error(total: Place, static: Place, envelope: Envelope) -> tuple[float, 
     used = envelope.wing_out if total.folds or static.folds else np.ones(envelope.mach.size, dtype=bool)
     at = envelope.alpha[used], envelope.beta[used], envelope.mach[used]
     weight = envelope.weight[used] / envelope.weight[used].sum()
-    kept = total.share(*at) - static.share(*at)
+    out = envelope.wing_out[used]
+    kept = total.share(*at, out) - static.share(*at, out)
     errors = []
     for left in (kept, kept / np.sum(weight * kept)):
         error = envelope.airspeed[used] * (airspeed_ratio(left, at[2]) - 1.0)
