@@ -71,6 +71,13 @@ def draw(scenario: Scenario, index: int = 0) -> Draws:
     )
 
 
+def tare_window(scenario: Scenario, draws: Draws) -> airspeed.TareWindow | None:
+    """When the tare is taken, s: by the crew's countdown it is over when the cover is off."""
+    air = scenario.air_data
+    end = draws.release_time - air.cover_off
+    return None if air.tare == "none" else (end - air.tare_duration, end)
+
+
 class WatchedDetector:
     """A launch detector whose state is written down at each step from a given time on."""
 
@@ -100,16 +107,16 @@ class Onboard:
     """
 
     def __init__(self, scenario: Scenario, draws: Draws) -> None:
-        air, release_time = scenario.air_data, draws.release_time
+        release_time = draws.release_time
         rate = scenario.accelerometer.description().rate
-        end = release_time - air.cover_off  # the crew's countdown: the tare is over when the cover is off
-        tare = None if air.tare == "none" else (end - air.tare_duration, end)
         self._release_time = release_time
         self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
         self.computer = FlightComputer(
             scenario.flight_computer,
             self._detector,
-            airspeed.build(believed_air(scenario), believed_noise(scenario, draws.calibration), tare),
+            airspeed.build(
+                believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws)
+            ),
             rate,
             launch_axis(scenario.plant.kind, scenario.detector.axes),
         )

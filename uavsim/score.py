@@ -13,6 +13,9 @@ of the true specific force along the detector's axis. Where there is no airspeed
 Truth is interpolated linearly to the time of an estimate's row. Raw and filtered figures are over the same rows, those
 at which both exist; rows that the estimator itself calls invalid count. A value that does not exist is None (null in
 JSON), never 0.
+
+Whether the claimed uncertainty is what it is: NEES, coverage, NIS and whiteness as in `consistency`. Below V*, the
+speed that the noise hides, an error over its claim says nothing: there V < 2 σ_V.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.consistency import LAGS, LEAST, ljung_box
 from uavsim.plants.rig_settings import AIRCRAFT, PlantKind
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -40,6 +44,7 @@ LAST = 5.0  # s at the end over which cruise is judged
 SPEED_TOLERANCE = 2.0  # m/s
 BANK_LIMIT = np.pi / 6.0  # rad
 TWO_SIGMA = 1.959964  # standard normal quantile of 97.5 %
+HIDDEN = 2.0  # σ_V: an airspeed below it is below V*
 PHASES = ("stroke", "transition", "cruise")
 RUN = "run"  # the one phase of a rig
 
@@ -251,18 +256,24 @@ def _airspeed(flight: Judged) -> dict[str, Any]:
     raw = flight.estimate("airspeed_raw") - truth
     sd = flight.estimate("airspeed_sd")
     valid = flight.estimate("valid")
+    nis = np.column_stack([flight.estimate("nis_total"), flight.estimate("nis_static")])
+    visible = flight.estimate("airspeed") >= HIDDEN * sd
     exists = not np.isnan(flight.truth("airspeed")).all()
     figures = {"": flight.rows(time) & exists} | {name: flight.rows(time, name) & exists for name in PHASES}
-    result = {name: _figures(error[rows], raw[rows], sd[rows], valid[rows]) for name, rows in figures.items()}
+    result = {
+        name: {**_figures(error[rows], raw[rows], sd[rows], valid[rows], visible[rows]), **_innovations(nis[rows])}
+        for name, rows in figures.items()
+    }
     return {**result.pop(""), **result}
 
 
-def _figures(error: Array, raw: Array, sd: Array, valid: Array) -> dict[str, Any]:
+def _figures(error: Array, raw: Array, sd: Array, valid: Array, visible: NDArray[np.bool_]) -> dict[str, Any]:
     """Error figures over the rows at which raw and filtered value exist, and the share of all rows that are valid."""
     both = np.isfinite(error) & np.isfinite(raw)
-    error, raw, sd = error[both], raw[both], sd[both]
+    error, raw, sd, visible = error[both], raw[both], sd[both], visible[both]
     claimed = (sd > 0.0) & np.isfinite(sd)
     relative = error[claimed] / sd[claimed]
+    nees = relative[visible[claimed]] ** 2
     rmse, rmse_raw = _rms(error), _rms(raw)
     return {
         "rmse": rmse,
@@ -270,10 +281,30 @@ def _figures(error: Array, raw: Array, sd: Array, valid: Array) -> dict[str, Any
         "reduction_percent": _reduction(rmse, rmse_raw),
         "bias": _number(error.mean()) if error.size else None,
         "max_error": _number(np.abs(error).max()) if error.size else None,
-        "nees_mean": _number((relative**2).mean()) if relative.size else None,
-        "coverage_95": _number((np.abs(relative) <= TWO_SIGMA).mean()) if relative.size else None,
+        "nees_mean": _number(nees.mean()) if nees.size else None,
+        "coverage_95": _covered(relative, TWO_SIGMA),
+        "coverage_1_sigma": _covered(relative, 1.0),
+        "coverage_2_sigma": _covered(relative, 2.0),
+        "coverage_3_sigma": _covered(relative, 3.0),
         "valid_fraction": _number(valid.mean()) if valid.size else None,
         "samples": int(error.size),
+    }
+
+
+def _covered(relative: Array, sigmas: float) -> float | None:
+    """Share of errors within so many claimed standard deviations."""
+    return _number((np.abs(relative) <= sigmas).mean()) if relative.size else None
+
+
+def _innovations(nis: Array) -> dict[str, Any]:
+    """Mean NIS of both pressures' readings, and the probability that white innovations look as coloured as these.
+
+    The latter is McLeod and Li's test on the total pressure's: autocorrelations of the squares.
+    """
+    total, both = nis[:, 0][np.isfinite(nis[:, 0])], nis[np.isfinite(nis)]
+    return {
+        "nis_mean": _number(both.mean()) if both.size else None,
+        "whiteness": _number(ljung_box(total)[1]) if total.size >= LAGS + LEAST else None,
     }
 
 

@@ -1,0 +1,154 @@
+"""Flights in the loop held against the bound: the airspeed's error from the true launch on, and what could be had.
+
+Each flight's truth gives a course as `studies.bounds` wants it. With the airspeed V, the height h and the slope that
+the energy-rate relation speaks of,
+
+    s = g ḣ/V = −g v_d/V,
+
+and the specific force along body x less that at rest. The information is averaged over the courses; the schedule of
+readings is the first flight's.
+
+The aided filter starts from readings of before the launch, kept until the launch is recognised. What it makes of them
+is computed on board in one go at the recognition and told nobody; here the filter is run on a flight's own readings
+once more, and what it would have said at each of them is written down.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uavsim.beliefs import believed_air, believed_noise
+from uavsim.cosim import draw, tare_window
+from uavsim.flight import Flight
+from uavsim.onboard.airspeed import AidedFilter, Estimate, EstimatorSettings, NoiseModel, TareWindow
+from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
+from uavsim.scenario import Scenario
+from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
+from uavsim.truth import STANDARD_GRAVITY
+
+Array = NDArray[np.float64]
+
+STEP = 2e-3  # s, of the common time axis of courses
+LEAD = 0.6  # s before the true launch from which a course is kept; the filter starts later
+SLOWEST = 0.5  # m/s; below it the climb's share of gravity is that of the rail
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """One flight's true course on times from `-LEAD` on in steps of `STEP` since the true launch; shape (n,) each."""
+
+    airspeed: Array
+    slope: Array
+    static: Array
+    force: Array
+    temperature: float
+
+
+class RememberingFilter(AidedFilter):
+    """The aided filter, which writes down what it says of the readings that it is started with.
+
+    Attributes
+    ----------
+    history : list of tuple
+        Estimates in flight, those before the recognition included.
+    """
+
+    __slots__ = ("history",)
+
+    def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
+        self.history: list[Estimate] = []
+        super().__init__(settings, noise, tare_window)
+
+    def _fly(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        estimate = super()._fly(t, p_total, p_static, temperature, t_total, t_static)
+        if estimate is not None:
+            self.history.append(estimate)
+        return estimate
+
+
+def replayed(flight: Flight) -> Array:
+    """Return t, airspeed, its standard deviation and the raw airspeed from where the filter starts on; shape (r, 4)."""
+    scenario = Scenario.from_dict(flight.scenario)
+    draws = draw(scenario)
+    estimator = RememberingFilter(
+        believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws)
+    )
+    launch = flight.score["launch"]["detected_time"]
+    forces = iter(flight.accelerometer.to_numpy().tolist())
+    force = next(forces, None)
+    for row in flight.air_data.to_numpy().tolist():
+        while force is not None and force[0] <= row[0]:
+            estimator.accelerometer(*force)
+            if force[0] == launch:
+                estimator.launched(launch)
+            force = next(forces, None)
+        estimator.step(*row)
+    return np.array([e[:4] for e in estimator.history]).reshape(-1, 4)
+
+
+def course(flight: Flight) -> Course:
+    """Return a flight's course; it must have been launched."""
+    truth = flight.truth
+    t = truth["t"].to_numpy() - flight.score["launch"]["true_time"]
+    speed, down, force = (truth[name].to_numpy() for name in ("airspeed", "vd", "fx"))
+    rest = float(force[(t > -LEAD) & (t < flight.score["launch"]["release_time"] + t[0] - truth["t"].iloc[0])].mean())
+    slope = np.where(speed > SLOWEST, -STANDARD_GRAVITY * down / np.maximum(speed, SLOWEST), rest)
+    axis = np.arange(-LEAD, t[-1], STEP)
+    return Course(
+        airspeed=np.interp(axis, t, speed),
+        slope=np.interp(axis, t, slope),
+        static=np.interp(axis, t, truth["p_static"].to_numpy()),
+        force=np.interp(axis, t, force - rest),
+        temperature=float(truth["temperature"].iloc[-1]),
+    )
+
+
+def together(courses: list[Course]) -> Courses:
+    """Put courses on one time axis, as long as the shortest."""
+    n = min(c.airspeed.size for c in courses)
+    return Courses(
+        t=np.asarray(-LEAD + STEP * np.arange(n), dtype=np.float64),
+        airspeed=np.stack([c.airspeed[:n] for c in courses]),
+        slope=np.stack([c.slope[:n] for c in courses]),
+        static=np.stack([c.static[:n] for c in courses]),
+        force=np.stack([c.force[:n] for c in courses]),
+        temperature=float(np.mean([c.temperature for c in courses])),
+    )
+
+
+def bound(flight: Flight, courses: Courses) -> tuple[Array, Array]:
+    """Return the times of a flight's readings since its true launch, s, and the least standard deviation, m/s.
+
+    Parameters
+    ----------
+    flight : Flight
+        Whose schedule is taken.
+    courses : Courses
+        Those of many flights, its own among them, or its own alone.
+    """
+    scenario = Scenario.from_dict(flight.scenario)
+    noise = believed_noise(scenario, draw(scenario).calibration)
+    settings = believed_air(scenario)
+    score = flight.score["launch"]
+    true, detected = score["true_time"], score["detected_time"]
+    readings = flight.air_data
+    t = readings["t"].to_numpy() - true
+    start = max(detected - true - settings.aided.replay, -LEAD + STEP)
+    rows = (t > start) & (t < courses.t[-1] - STEP)
+    ends = [readings[name].to_numpy()[rows] - true for name in ("t_total", "t_static")]
+    air = scenario.air_data
+    conversions = air.tare_duration * np.array([air.total.description().rate, air.static.description().rate])
+    seen = np.maximum(1.0, np.minimum(conversions, air.tare_duration * air.rate))
+    tare = float(np.hypot(noise.total_sd / np.sqrt(seen[0]), noise.static_sd / np.sqrt(seen[1])))
+    rest = float(np.hypot(noise.accelerometer_sd / np.sqrt(BLOCK * noise.accelerometer_rate), WANDER))
+    schedule = Schedule(start, t[rows], *ends)
+    return t[rows], AirspeedBound(courses, schedule, settings, noise, Start(rest, tare)).sd()
+
+
+def true_airspeed(flight: Flight, time: Array) -> Array:
+    """Airspeed at some times, m/s."""
+    found: Array = np.interp(time, flight.truth["t"].to_numpy(), flight.truth["airspeed"].to_numpy())
+    return found
