@@ -14,9 +14,10 @@ module alone copies them from the one into the settings of the other. What no de
 """
 
 from dataclasses import replace
-from math import hypot, sqrt
+from math import hypot, pi, sqrt
 
 from sensors import Streams
+from sensors.accelerometer_description import AccelerometerDescription
 from sensors.pneumatics import laminar_lag
 from sensors.pressure_description import PressureDescription
 from sensors.settings import AirDataSettings, PressureSettings, TubeSettings
@@ -69,17 +70,19 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
         accelerometer_sd=belief.accelerometer_noise * hypot(accelerometer.noise_sd[0], _vibration(scenario)),
         accelerometer_scale_sd=belief.accelerometer_scale * accelerometer.scale_sd,
         accelerometer_rate=accelerometer.rate,
+        accelerometer_lag=belief.accelerometer_lag * (scenario.accelerometer.delay + _delay(accelerometer)),
     )
 
 
 def believed_air(scenario: Scenario) -> EstimatorSettings:
-    """Return the estimator's settings with the turbulence that the environment declares, if it is more than theirs."""
+    """Return the estimator's settings with the turbulence that the environment declares, if it declares any."""
     settings = scenario.estimator
-    sd, length = turbulence(scenario.environment.turbulence_wind_20ft, scenario.flight_computer.height)
+    height = max(scenario.flight_computer.height, LOWEST * FOOT)
+    sd, length = turbulence(scenario.environment.turbulence_wind_20ft, height)
     sd *= scenario.mismatch.gust
-    if sd <= max(settings.aided.gust_sd, settings.aided.gust_floor):
+    if not sd > 0.0:
         return settings
-    return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length))
+    return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length, gust_height=height))
 
 
 def turbulence(wind_20ft: float, height: float) -> tuple[float, float]:
@@ -139,6 +142,15 @@ def _lag(part: PressureDescription, tube: TubeSettings) -> float:
         temperature=STANDARD_TEMPERATURE,
         polytropic=1.4,
     )
+
+
+def _delay(part: AccelerometerDescription) -> float:
+    """Delay of a steady signal in the part's low-pass, s."""
+    if not part.errors.bandwidth:
+        return 0.0
+    if not part.poles:
+        return 0.5 / part.rate
+    return sqrt(part.poles) / (2.0 * pi * part.bandwidth)  # Butterworth: 1/ω for one pole, √2/ω for two
 
 
 def _walk(part: PressureDescription) -> float:

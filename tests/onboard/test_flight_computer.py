@@ -57,6 +57,9 @@ class Oracle:
     def launched(self, t: float) -> None:
         self.told.append(("launched", t))
 
+    def unfolding(self, t: float) -> None:
+        self.told.append(("unfolding", t))
+
     def rearmed(self, t: float) -> None:
         self.told.append(("rearmed", t))
 
@@ -501,7 +504,9 @@ def test_the_estimator_is_told_of_a_launch_and_of_one_that_was_none() -> None:
     feed(box, -1.0, 5.4, 7.0)
     at = [(e["event"], e["t"]) for e in box.events]
     told = dict(at)
-    assert box.estimator.told == [("launched", at[0][1]), ("rearmed", told["not_a_launch"]), ("launched", at[3][1])]
+    assert box.estimator.told == [("launched", at[0][1]), ("rearmed", told["not_a_launch"]), ("launched", at[3][1]),
+        ("unfolding", told["wings_commanded"]),
+    ]  # fmt: skip
 
 
 def test_an_aided_estimator_gets_every_reading_before_it_is_told_of_the_launch() -> None:

@@ -73,6 +73,9 @@ class Estimator(Protocol):
     def rearmed(self, t: float) -> None:
         """Be told that it was none."""
 
+    def unfolding(self, t: float) -> None:
+        """Be told that the wings have been commanded out at `t`, s."""
+
 
 @dataclass(frozen=True, slots=True)
 class FlightComputerSettings:
@@ -286,6 +289,7 @@ class FlightComputer:
         if self.state == "coasting":
             self._note(t, "wings_commanded")
             self._command(wing=1.0)
+            self.estimator.unfolding(t)
             self.state, self._next_action = "wings", t + self.settings.motor_delay
         elif self.state == "wings":
             self._note(t, "motor_on")

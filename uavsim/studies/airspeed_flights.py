@@ -18,11 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.beliefs import believed_air, believed_noise
 from uavsim.cosim import draw, tare_window
 from uavsim.flight import Flight
 from uavsim.onboard.airspeed import AidedFilter, Estimate, EstimatorSettings, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
+from uavsim.onboard.airspeed.rest_wind import HIDDEN, VISIBLE
 from uavsim.scenario import Scenario
 from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
 from uavsim.truth import STANDARD_GRAVITY
@@ -77,6 +79,7 @@ def replayed(flight: Flight) -> Array:
         believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws)
     )
     launch = flight.score["launch"]["detected_time"]
+    wings = next((e["t"] for e in flight.events if e["event"] == "wings_commanded"), None)
     forces = iter(flight.accelerometer.to_numpy().tolist())
     force = next(forces, None)
     for row in flight.air_data.to_numpy().tolist():
@@ -84,6 +87,8 @@ def replayed(flight: Flight) -> Array:
             estimator.accelerometer(*force)
             if force[0] == launch:
                 estimator.launched(launch)
+            if force[0] == wings:
+                estimator.unfolding(force[0])
             force = next(forces, None)
         estimator.step(*row)
     return np.array([e[:4] for e in estimator.history]).reshape(-1, 4)
@@ -138,14 +143,21 @@ def bound(flight: Flight, courses: Courses) -> tuple[Array, Array]:
     t = readings["t"].to_numpy() - true
     start = max(detected - true - settings.aided.replay, -LEAD + STEP)
     rows = (t > start) & (t < courses.t[-1] - STEP)
-    ends = [readings[name].to_numpy()[rows] - true for name in ("t_total", "t_static")]
+    total_end, static_end = (readings[name].to_numpy()[rows] - true for name in ("t_total", "t_static"))
     air = scenario.air_data
     conversions = air.tare_duration * np.array([air.total.description().rate, air.static.description().rate])
     seen = np.maximum(1.0, np.minimum(conversions, air.tare_duration * air.rate))
     tare = float(np.hypot(noise.total_sd / np.sqrt(seen[0]), noise.static_sd / np.sqrt(seen[1])))
     rest = float(np.hypot(noise.accelerometer_sd / np.sqrt(BLOCK * noise.accelerometer_rate), WANDER))
-    schedule = Schedule(start, t[rows], *ends)
-    return t[rows], AirspeedBound(courses, schedule, settings, noise, Start(rest, tare)).sd()
+    wings = [e["t"] - true for e in flight.events if e["event"] == "wings_commanded"]
+    schedule = Schedule(start, t[rows], total_end, static_end, wings[0] if wings else np.inf)
+    speed = np.interp(start, courses.t, courses.airspeed.mean(axis=0))
+    at_rest = (air.cover_off + start) * min(air.rate, air.total.description().rate)
+    sigma = float(np.hypot(np.hypot(noise.total_sd, noise.static_sd) / np.sqrt(max(1.0, at_rest)), tare))
+    square = 2.0 * sigma * GAS_CONSTANT_DRY_AIR * courses.temperature / float(courses.static[:, 0].mean())
+    known = 0.5 * square / speed if speed * speed >= VISIBLE**2 * square else HIDDEN * np.sqrt(square)
+    begun = Start(rest, tare, min(float(known), settings.wind_sd))
+    return t[rows], AirspeedBound(courses, schedule, settings, noise, begun).sd()
 
 
 def true_airspeed(flight: Flight, time: Array) -> Array:

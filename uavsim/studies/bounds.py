@@ -21,6 +21,8 @@ from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.aided import AROUND, SLOWEST
 from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
+from uavsim.onboard.airspeed.gust import gust_density
+from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 
@@ -126,12 +128,15 @@ class Schedule:
         Shape (r,): times of the readings of the head, s.
     total_end, static_end : ndarray
         Shape (r,): ends of the conversions that they carry, s.
+    unfolding : float
+        When the wings are commanded out, s.
     """
 
     start: float
     told: Array
     total_end: Array
     static_end: Array
+    unfolding: float = np.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,10 +149,13 @@ class Start:
         Of f_x at rest, m/s².
     tare_sd : float
         Of the pair's difference, Pa.
+    speed_sd : float or None
+        Of the airspeed, m/s; None: that of the wind by the estimator's settings.
     """
 
     rest_sd: float
     tare_sd: float
+    speed_sd: float | None = None
 
 
 class AirspeedBound:
@@ -166,14 +174,12 @@ class AirspeedBound:
         self, courses: Courses, schedule: Schedule, settings: EstimatorSettings, noise: NoiseModel, start: Start
     ) -> None:
         self._courses, self._schedule, self._noise, self._aided = courses, schedule, noise, settings.aided
-        gust = max(self._aided.gust_sd, self._aided.gust_floor)
-        self._gust = 2.0 * gust**2 / self._aided.gust_length
         self._gas = GAS_CONSTANT_DRY_AIR * courses.temperature
         self._share = 0.5 * noise.temperature_sd / courses.temperature
         bias = self._aided.bias_sd**2
         initial = np.diag(
             [
-                settings.wind_sd**2,
+                (settings.wind_sd if start.speed_sd is None else start.speed_sd) ** 2,
                 bias,
                 AROUND**2,
                 bias + start.rest_sd**2,
@@ -227,7 +233,11 @@ class AirspeedBound:
         across = float(np.mean(density * speed)) * dt
         reach = np.array([[dt * dt / 3.0, across * dt / 3.0], [across * dt / 3.0, across**2 / 3.0]])
         q = np.zeros((SIZE, SIZE))
-        q[V, V] = self._gust * float(np.mean(np.maximum(speed, SLOWEST))) * dt
+        height = (float(c.static[:, 0].mean()) - float(static.mean())) / (STANDARD_GRAVITY * float(density.mean()))
+        q[V, V] = gust_density(aided, height) * float(np.mean(np.maximum(speed, SLOWEST))) * dt
+        unfolding = self._schedule.unfolding
+        meanwhile = max(0.0, min(end, unfolding + aided.unfolding_time) - max(start, unfolding))
+        q[V, V] += aided.unfolding_rate**2 * meanwhile
         q[V, V] += noise.accelerometer_sd**2 / noise.accelerometer_rate * dt + dt * dt / 3.0 * q_bias
         q[np.ix_((V, P), (V, P))] += q_slope * reach
         q[P, P] += aided.static_walk**2 * dt

@@ -38,6 +38,9 @@ class Estimator(Protocol):
     def rearmed(self, t: float) -> None:
         """Be told that it was none and that the aircraft sits on its rail again."""
 
+    def unfolding(self, t: float) -> None:
+        """Be told that the wings have been commanded out at `t`, s: masses that move push the accelerometer about."""
+
 
 @dataclass(frozen=True, slots=True)
 class NoiseModel:
@@ -69,6 +72,8 @@ class NoiseModel:
         Scale error of the accelerometer.
     accelerometer_rate : float
         Its output rate, Hz.
+    accelerometer_lag : float
+        Age of a reading of specific force at its time stamp, s.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
@@ -86,3 +91,4 @@ class NoiseModel:
     accelerometer_sd: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
     accelerometer_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.005
     accelerometer_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 1000.0
+    accelerometer_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0

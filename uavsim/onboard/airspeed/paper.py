@@ -213,3 +213,6 @@ class PaperFilter:
 
     def rearmed(self, t: float) -> None:
         """Need not know that it was none."""
+
+    def unfolding(self, t: float) -> None:
+        """Need not know of the wings."""

@@ -20,6 +20,8 @@ class AidedSettings:
         The least, m/s: what calm air has.
     gust_length : float
         Its scale length, m: the gust's correlation time is that over the airspeed.
+    gust_height : float
+        Height above the launch at which these hold, m; the gust's density is as 1/height; 0: they hold everywhere.
     slope_rate : float
         How fast the climb's share of gravity, g·sin γ, wanders in flight, (m/s²)/√s.
     slope_time : float
@@ -33,6 +35,10 @@ class AidedSettings:
     on_rail : float
         The aircraft is on its rail, where slope and angle of attack are fixed, while the mean specific force between
         two readings is by so much above that at rest, m/s².
+    unfolding_time : float
+        How long after the wings' command they push the accelerometer about, s.
+    unfolding_rate : float
+        How far the integral of f_x wanders from the airspeed meanwhile, (m/s)/√s.
     replay : float
         How long before its recognition a launch is replayed from, s; it has to begin on the rail.
     """
@@ -40,12 +46,15 @@ class AidedSettings:
     gust_sd: Annotated[float, Interval(ge=0.0, le=20.0)] = 0.2
     gust_floor: Annotated[float, Interval(gt=0.0, le=5.0)] = 0.2
     gust_length: Annotated[float, Interval(gt=1.0, le=5000.0)] = 200.0
+    gust_height: Annotated[float, Interval(ge=0.0, le=5000.0)] = 0.0
     slope_rate: Annotated[float, Interval(gt=0.0, le=50.0)] = 0.7
     slope_time: Annotated[float, Interval(gt=0.1, le=1000.0)] = 5.0
     bias_sd: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.3
     bias_time: Annotated[float, Interval(gt=0.01, le=1000.0)] = 5.0
     static_walk: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.3
     on_rail: Annotated[float, Interval(gt=0.0, le=500.0)] = 20.0
+    unfolding_time: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.35
+    unfolding_rate: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
     replay: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.3
 
 

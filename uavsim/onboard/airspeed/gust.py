@@ -1,0 +1,23 @@
+"""How fast the gust along the flight path wanders, at a height above the place of launch.
+
+Dryden's longitudinal gust of standard deviation σ and length L is, over less than its correlation time L/V, a random
+walk of density 2 σ² V/L. At low altitude (MIL-F-8785C, h in feet)
+
+    σ_u = σ_w/(0.177 + 0.000823 h)^0.4,    L_u = h/(0.177 + 0.000823 h)^1.2,    2 σ_u²/L_u ∝ (0.177 + 0.000823 h)^0.4/h
+
+which from 1000 down to 10 ft, where the law ends, is 1/h but for a factor that falls from 1.0 to 0.5. So σ and L are
+believed at one height, and the density at others is taken as 1/h of that.
+"""
+
+from uavsim.onboard.airspeed.settings import AidedSettings
+
+LOWEST = 3.05  # m: 10 ft, MIL-F-8785C; below it the turbulence is as there
+
+
+def gust_density(aided: AidedSettings, height: float) -> float:
+    """2 σ²/L, m/s², at a height, m; never less than that of calm air."""
+    calm = 2.0 * aided.gust_floor**2 / aided.gust_length
+    declared = 2.0 * aided.gust_sd**2 / aided.gust_length
+    if aided.gust_height > 0.0:
+        declared *= aided.gust_height / (height if height > LOWEST else LOWEST)
+    return declared if declared > calm else calm

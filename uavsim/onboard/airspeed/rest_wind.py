@@ -1,0 +1,68 @@
+"""The wind that a head sees on the rail, between its tare and the launch.
+
+With the mean pressure difference D of the last conversions at rest, tared, and its standard deviation σ,
+
+    w = √(2 D/ρ),   V* = √(2 σ/ρ),   σ_w = V*²/(2 w)
+
+if w is at least 2 V*. Less cannot be told from none, nor a headwind from a tailwind: then the airspeed along the launch
+is 0 with the standard deviation √(w² + (0.63 V*)²), the second what a clipped root of noise is off by (`paper`).
+
+A visible wind is a headwind until the push tells otherwise.
+"""
+
+from collections.abc import Iterable
+from math import inf, sqrt
+
+VISIBLE = 2.0  # V*
+HIDDEN = 0.632  # V*, rms of the clipped root at rest
+OPENED = 0.02  # s after the tare in which the last covered conversion leaves the head
+FEWEST = 3  # conversions
+
+Row = tuple[float, float, float, float, float, float]
+
+
+def wind_at_rest(
+    rows: Iterable[Row], *, start: float, end: float, tare: float, variance: float, each: float, density: float
+) -> tuple[float, float]:
+    """Return the airspeed on the rail and its standard deviation, m/s; 0 and infinity if nothing was read.
+
+    Parameters
+    ----------
+    rows : iterable of tuple
+        Readings of the head.
+    start, end : float
+        Conversions that end between them count, s; the head is uncovered from `start` on.
+    tare, variance : float
+        Of the pair, Pa and Pa².
+    each : float
+        Variance of one reading's difference, Pa².
+    density : float
+        Of the air, kg/m³.
+    """
+    total, count, last = 0.0, 0, -inf
+    for _, p_total, p_static, _, t_total, t_static in rows:
+        if not (start + OPENED < t_total <= end and start + OPENED < t_static and t_total > last):
+            continue
+        last = t_total
+        if 0.0 < p_total < inf and 0.0 < p_static < inf:
+            total += p_total - p_static
+            count += 1
+    if count < FEWEST or not density > 0.0:
+        return 0.0, inf
+    difference, sigma = total / count - tare, sqrt(each / count + variance)
+    square = 2.0 * sigma / density
+    wind = sqrt(2.0 * difference / density) if difference > 0.0 else 0.0
+    if wind * wind >= VISIBLE * VISIBLE * square:
+        return wind, 0.5 * square / wind
+    return 0.0, sqrt(wind * wind + HIDDEN * HIDDEN * square)
+
+
+def turning(wind: float, each: float, density: float) -> float:
+    """Airspeed from which a total pressure tells a headwind from a tailwind, if it was a headwind, m/s.
+
+    By then the push has given V − w = u: the pressure is of w + u or of |u − w|. They are told apart where u is three
+    standard deviations of an airspeed by one reading, and a good share of the wind.
+    """
+    if not wind > 0.0:
+        return 0.0
+    return wind + min(1.5 * wind, max(0.3 * wind, 3.0 * sqrt(each) / (density * wind)))
