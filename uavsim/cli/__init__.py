@@ -14,8 +14,9 @@ from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
+from uavsim.cli.tune import tune
 
-COMMANDS = (scenarios, fly, replay, sensors, bench, paper, roc)
+COMMANDS = (scenarios, fly, replay, sensors, bench, paper, roc, tune)
 """In the order of the help."""
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
