@@ -57,7 +57,7 @@ def test_parts_come_back_in_their_order_and_what_one_raises_comes_out() -> None:
 
 
 def test_counts_are_those_of_step() -> None:
-    """Ten minutes of two classes, at a detector that cries wolf in both; `make validate` looks at all kinds in the mix."""
+    """Ten minutes of two classes, at one that cries wolf in both; `make validate` looks at all of them."""
     touchy = DetectorSettings(kind="single-threshold", threshold=25.0, window=0.002)
     found = count([touchy, DetectorSettings(kind="px4-norm")], dict.fromkeys(("soft drops", "centrifuge"), 0.1), seed=3)
     for name in ("soft drops", "centrifuge"):

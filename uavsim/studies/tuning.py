@@ -173,22 +173,29 @@ def hours_for(budget: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _Candidate:
-    """Settings that keep the budget, and what they do."""
+class _Keeper:
+    """Settings that keep the budget, the next lower level tried, and alarms in the mix and on the centrifuge."""
 
     settings: DetectorSettings
-    second: float
-    below: float  # the next lower level that was tried
-    verdicts: Verdicts
+    below: float
     alarms: FalseAlarms
-    loads: int  # alarms on the centrifuge
+    loads: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """Settings that keep the budget, the grid's value of the second of them, and what they see."""
+
+    keeper: _Keeper
+    second: float
+    verdicts: Verdicts
 
     @property
     def rank(self) -> tuple[float, ...]:
         """Smaller is better."""
-        result = scored(self.verdicts)
+        result, one = scored(self.verdicts), self.keeper
         latencies = [result[name] for name in ("onset_median", "onset_p95")]
-        return (-result["detected"], self.loads > 0, *(inf if x != x else x for x in latencies), level(self.settings))
+        return (-result["detected"], one.loads > 0, *(inf if x != x else x for x in latencies), level(one.settings))
 
 
 class _Kept:
@@ -251,9 +258,9 @@ class _Search:
         values = [found.second]
         if self.second != "paparazzi.calls":
             values += [0.5 * (a + b) for a, b in pairwise(self.values) if found.second in (a, b)]
-        top = level(found.settings)
-        around = np.geomspace(found.below, top, FINE + 1)[1:].tolist()
-        wider = np.geomspace(0.5 * found.below, 1.5 * top, 2 * FINE).tolist()
+        top = level(found.keeper.settings)
+        around = np.geomspace(found.keeper.below, top, FINE + 1)[1:].tolist()
+        wider = np.geomspace(0.5 * found.keeper.below, 1.5 * top, 2 * FINE).tolist()
         return [self._row(value, around if value == found.second else wider) for value in values]
 
     def _row(self, value: float, levels: Sequence[float]) -> list[DetectorSettings]:
@@ -282,12 +289,10 @@ class _Search:
                 f"{self.scenario.name}: no settings of {self.base.kind} that were tried suit its sensor and stroke"
             )
         kept = self._kept(rows)
-        settings = [chosen for chosen, _, _ in kept]
-        loads = self._alarms(settings, self.seed, LOAD, 0.02) if settings else {}
-        verdicts = self._tried(settings, self.seed, self.trials, 0.1)
+        verdicts = self._tried([one.settings for one in kept], self.seed, self.trials, 0.1)
         found = [
-            _Candidate(chosen, self._nearest(float(get(chosen, self.second))), below, verdict, alarm, load.alarms)
-            for (chosen, alarm, below), verdict, load in zip(kept, verdicts, loads.get("centrifuge", []), strict=True)
+            _Candidate(one, self._nearest(float(get(one.settings, self.second))), verdict)
+            for one, verdict in zip(kept, verdicts, strict=True)
         ]
         found += [] if known is None else [known]
         if not found:
@@ -297,8 +302,8 @@ class _Search:
             )
         return min(found, key=lambda candidate: candidate.rank)
 
-    def _kept(self, rows: list[list[DetectorSettings]]) -> list[tuple[DetectorSettings, FalseAlarms, float]]:
-        """For each row the lowest level that keeps the budget, its alarms, and the level below it.
+    def _kept(self, rows: list[list[DetectorSettings]]) -> list[_Keeper]:
+        """For each row the lowest level that keeps the budget, and the lowest that is silent on the centrifuge, too.
 
         A part of the hours shows which levels are far too low; of the others the lowest few are counted in full, as
         alarms fall with the level.
@@ -306,20 +311,26 @@ class _Search:
         flat = [chosen for row in rows for chosen in row]
         if not flat:
             return []
-        part = iter(self._alarms(flat, self.seed, {"mix": self.hours / SCREEN}, 0.08)["mix"])
-        most = MARGIN * self.budget * self.hours
-        starts = [sum(next(part).alarms > most for _ in row) for row in rows]
-        picked = [row[start : start + FULL] for row, start in zip(rows, starts, strict=True)]
-        full = [chosen for row in picked for chosen in row]
-        counted = iter(self._alarms(full, self.seed, {"mix": self.hours}, 0.2)["mix"] if full else ())
-        kept = []
-        for row, some, start in zip(rows, picked, starts, strict=True):
-            alarms = [next(counted) for _ in some]
-            good = [i for i, found in enumerate(alarms) if found.interval()[1] <= MARGIN * self.budget]
-            if good:
-                i = start + good[0]
-                kept.append((row[i], alarms[good[0]], level(row[i - 1]) if i else 0.7 * level(row[i])))
-        return kept
+        seen = self._alarms(flat, self.seed, {"mix": self.hours / SCREEN, **LOAD}, 0.08)
+        most, picked, at = MARGIN * self.budget * self.hours, [], 0
+        for row in rows:
+            begun = range(at, at := at + len(row))
+            start = sum(seen["mix"][i].alarms > most for i in begun)
+            silent = start + sum(seen["centrifuge"][i].alarms > 0 for i in begun[start:])
+            for first in dict.fromkeys((start, silent)):
+                picked += [(row, i, seen["centrifuge"][begun[i]].alarms) for i in range(len(row))[first : first + FULL]]
+        full = list(dict.fromkeys(row[i] for row, i, _ in picked))
+        counted = dict(
+            zip(full, self._alarms(full, self.seed, {"mix": self.hours}, 0.2)["mix"] if full else (), strict=True)
+        )
+        kept: dict[tuple[int, bool], _Keeper] = {}
+        for row, i, loads in picked:
+            alarms = counted[row[i]]
+            if alarms.interval()[1] <= MARGIN * self.budget:
+                below = level(row[i - 1]) if i else 0.7 * level(row[i])
+                for silent in {False, loads == 0}:
+                    kept.setdefault((id(row), silent), _Keeper(row[i], below, alarms, loads))
+        return list(dict.fromkeys(kept.values()))
 
     def _nearest(self, value: float) -> float:
         """The grid's own value of one that was rounded."""
@@ -327,16 +338,16 @@ class _Search:
 
     def scored(self, best: _Candidate) -> Tuned:
         """Score what was found, and what was before, on the fresh seed."""
-        both = [best.settings, self.base]
+        both = [best.keeper.settings, self.base]
         alarms = self._alarms(both, self.fresh, {"mix": self.hours, **OTHERS}, 0.1)
         verdicts = self._tried(both, self.fresh, 2 * self.trials, 0.1)
         tuned, was = (
             Score(scored(verdict), {name: found[i] for name, found in alarms.items()})
             for i, verdict in enumerate(verdicts)
         )
-        own = Score(scored(best.verdicts), {"mix": best.alarms})
+        own = Score(scored(best.verdicts), {"mix": best.keeper.alarms})
         return Tuned(
-            scenario=self._placed(best.settings),
+            scenario=self._placed(best.keeper.settings),
             before=self.base,
             budget=self.budget,
             tuned=tuned,
