@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch.settings import BELOW, USES
+from uavsim.onboard.launch.settings import USES, reference
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
 from uavsim.views.launch_sum import HEIGHTS, draw_held, held
@@ -106,7 +106,7 @@ def levels(record: Record) -> dict[str, float]:
         return {"c": group["reference"] / STANDARD_GRAVITY} if "reference" in group else {}
     threshold = settings["threshold"]
     if "adaptive" in used:
-        return {"c": settings["adaptive"].get("reference", threshold - BELOW) / STANDARD_GRAVITY}
+        return {"c": reference(threshold, settings["adaptive"].get("reference")) / STANDARD_GRAVITY}
     if "trigger" not in used:
         return {"level": threshold / STANDARD_GRAVITY}
     trigger = settings.get("trigger", threshold)

@@ -12,7 +12,7 @@ limit about as often as exp(-2 δ h/(σ² T)), T the sample's period: what is fa
 
     h_min   9 g·ms: one shock of 5 ms adds 5 g·ms, its ringing less, and two that touch no more than 10
     κ       15 ms: r = 0.9 g in noise of 1 g gives 13.4 g·ms, where a run on the centrifuge at 4.1 g passes c by noise
-    h_max   16 g·ms: vibration of 2-3 g would ask for 22-30, more than a weak launch of 0.1 s adds
+    h_max   16 g·ms: vibration of 2-3 g would ask for 19-22, more than a weak launch of 0.1 s adds
 
 It begins rough, with h_max, so that nothing is decided soon before it is known to be smooth, and what is odd about a
 sample (NaN, a shock) raises the limit. m follows at a bounded rate, so that a shock is forgotten soon. Sources: as
