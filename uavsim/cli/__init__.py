@@ -43,8 +43,10 @@ def uavsim(
       uavsim replay output/catapult-7
       uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
       uavsim sensors bmp390
-      uavsim bench
+      uavsim roc --detectors adaptive-cusum,multi-level-window,px4
+      uavsim tune catapult --false-alarms 0.1
       uavsim paper
+      uavsim bench
     """  # noqa: D301 (click reads \b: keep these lines)
     if version:
         from uavsim import __version__
