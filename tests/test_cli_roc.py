@@ -47,3 +47,47 @@ def test_wrong_input_is_one_line(tmp_path: Path, arguments: tuple[str, ...], nam
     assert run.stderr.startswith("Error: ")
     assert named in run.stderr
     assert not (tmp_path / "none").exists()
+
+
+def tune(*arguments: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "uavsim.cli", "tune", *arguments]
+    return subprocess.run(command, check=False, capture_output=True, text=True)
+
+
+def test_tune_writes_a_scenario_that_flies(tmp_path: Path) -> None:
+    file = tmp_path / "tuned.toml"
+    run = tune(
+        "catapult", "--detector", "double-threshold", "--false-alarms", "8", "--trials", "10", "--out", str(file)
+    )
+    assert run.returncode == 0, run.stderr
+    assert "[detector]" in run.stdout
+    assert 'kind = "double-threshold"' in run.stdout
+    fly = [sys.executable, "-m", "uavsim.cli", "fly", str(file), "--set", "duration=8", "--set", "expect=timeout"]
+    flown = subprocess.run(
+        [*fly, "--no-plots", "--out", str(tmp_path / "flight")], check=False, capture_output=True, text=True
+    )
+    assert flown.returncode in (0, 1), flown.stderr
+    score = json.loads((tmp_path / "flight" / "score.json").read_text())
+    assert score["launch"]["detector"] == "double-threshold"
+    assert 0.0 < score["launch"]["latency"] < 0.05
+    again = tune("catapult", "--out", str(file))
+    assert again.returncode == 2
+    assert "exists" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (("--detector", "cusm"), "did you mean 'cusum'"),
+        (("--false-alarms", "0"), "must be above 0"),
+        (("--false-alarms", "1e-6"), "an hour can be shown"),
+        (("catapul",), "did you mean 'catapult'"),
+        (("catapult", "--detector", "cusum", "--trials", "3"), "--trials"),
+    ],
+)
+def test_what_cannot_be_tuned_is_one_line(tmp_path: Path, arguments: tuple[str, ...], named: str) -> None:
+    run = tune(*arguments, "--out", str(tmp_path / "none"))
+    assert run.returncode == 2
+    assert run.stderr.count("\n") == 1
+    assert named in run.stderr
+    assert not (tmp_path / "none").exists()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-HEAVY = {"jsbsim", "pandas", "scipy", "matplotlib", "pyarrow", "filterpy", "pydantic", "rich", "typer"}
+HEAVY = {"jsbsim", "pandas", "scipy", "matplotlib", "pyarrow", "filterpy", "pydantic", "rich", "typer", "numba"}
 
 
 def loaded(statement: str) -> set[str]:

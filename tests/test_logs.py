@@ -361,7 +361,12 @@ def test_the_figure_marks_the_detections_and_keeps_the_peaks(read) -> None:
 
 @pytest.mark.parametrize(
     ("kind", "level"),
-    [("cusum", "reference 4.50 g"), ("glr-bank", "reference"), ("single-threshold", "threshold 4.60 g")],
+    [
+        ("adaptive-cusum", "reference 4.50 g"),
+        ("cusum", "reference 4.50 g"),
+        ("glr-bank", "reference"),
+        ("single-threshold", "threshold 4.60 g"),
+    ],
 )
 def test_any_kind_of_detector_runs_and_is_drawn_with_its_level(read, kind: str, level: str) -> None:
     flight = replay_log(read(frame()), DetectorSettings(kind=kind))

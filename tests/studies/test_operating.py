@@ -57,10 +57,11 @@ def test_parts_come_back_in_their_order_and_what_one_raises_comes_out() -> None:
 
 
 def test_counts_are_those_of_step() -> None:
-    """Ten minutes of each class, at a detector that cries wolf in all of them."""
+    """Ten minutes of two classes, at one that cries wolf in both; `make validate` looks at all of them."""
     touchy = DetectorSettings(kind="single-threshold", threshold=25.0, window=0.002)
-    found = count([touchy, DetectorSettings(kind="px4-norm")], dict.fromkeys(DISTURBANCES, 0.1), seed=3)
-    for name, disturbance in DISTURBANCES.items():
+    found = count([touchy, DetectorSettings(kind="px4-norm")], dict.fromkeys(("soft drops", "centrifuge"), 0.1), seed=3)
+    for name in ("soft drops", "centrifuge"):
+        disturbance = DISTURBANCES[name]
         detector, alarms = build(touchy, RATE), 0
         for k, (fx,) in enumerate(disturbance.piece(3, 0, RATE, (0,)).tolist()):
             if detector.step(k / RATE, fx, 0.0, 0.0):
@@ -124,7 +125,7 @@ def test_trials_are_the_same_however_they_are_read() -> None:
 def test_a_flight_serves_many_sensors() -> None:
     """Readings differ by the sensor alone: at rest and in the stroke their mean is the flight's truth."""
     launches = Flown(load_scenario("catapult"), flights=1)
-    trials = launches.read(1, 0, 12)
+    trials = launches.read(1, 0, 5)
     truth = trials.truths[0]
     assert all(t == truth for t in trials.truths)
     assert truth.crossing is not None
@@ -149,7 +150,7 @@ def test_a_flown_launch_is_detected_when_it_is_in_flight() -> None:
     truth = launches.read(1, 0, 1).truths[0]
     assert truth.onset == own["true_time"]
     assert truth.crossing == own["crossing_time"]
-    found = judge(scenario.detector, launches.read(1, 0, 20), launches.rate).since_onset
+    found = judge(scenario.detector, launches.read(1, 0, 8), launches.rate).since_onset
     assert found.min() - 0.002 <= own["latency"] <= found.max() + 0.002
 
 

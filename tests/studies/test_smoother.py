@@ -33,7 +33,8 @@ def test_unscented_filter_agrees(mode):
 def test_smoother_is_better_and_honest():
     """20 runs of 2 s: its RMSE is below 0.8 of the filter's, its NEES 1 within 4 deviations of 130 independent squares.
 
-    The smoothed error is alike over about 0.3 s. The first 0.15 s of the launch, which it sees from both sides, are better known by a quarter at least.
+    The smoothed error is alike over about 0.3 s. The first 0.15 s of the launch, which it sees from both sides, are
+    better known by a quarter at least.
     """
     settings = replace(SMALL, runs=20, duration=2.0)
     drawn = matched.draw(settings)

@@ -228,7 +228,7 @@ def test_readings_and_truth_are_drawn_where_they_are(flight: Flight) -> None:
     start = flight.score["launch"]["true_time"]
     at = np.searchsorted(flight.accelerometer["t"], start + 1e-3 * x[10] - 1e-9)
     assert y[10] * STANDARD_GRAVITY == pytest.approx(flight.accelerometer["fx"].iloc[at])
-    assert lines["$G_1$ = $G_2$ = 4.60 g"].get_ydata()[0] == pytest.approx(4.6, abs=1e-3)
+    assert lines["c = 4.50 g"].get_ydata()[0] == pytest.approx(4.5, abs=1e-3)
     marks = {text.get_text(): text for text in figure.axes[0].texts}
     assert {"release", "true launch", "true 4.5 g", "detected", "rail exit"} <= marks.keys()
 
@@ -336,7 +336,8 @@ def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_p
     [
         ("multi-level-window", {"$G_1$ = $G_2$": 4.6}),
         ("sliding-window", {"level": 4.6}),
-        ("cusum", {"level": 4.5}),
+        ("adaptive-cusum", {"c": 4.5}),
+        ("cusum", {"c": 4.5}),
         ("px4", {}),
     ],
 )
@@ -346,3 +347,26 @@ def test_the_launch_figure_draws_the_levels_that_the_kind_reads(kind: str, level
 
     flight = uavsim.fly("catapult", overrides=[f"detector.kind={kind}", "duration=6"])
     assert launch.levels(Record(flight)) == pytest.approx(levels, abs=0.01)
+
+
+@pytest.mark.parametrize("kind", ["adaptive-cusum", "cusum", "single-threshold"])
+def test_the_launch_figure_draws_what_passes_its_limit(kind: str) -> None:
+    """The state that is found again from the readings passes the limit at the sample that the flight recognised."""
+    from uavsim.views import launch
+    from uavsim.views.record import Record
+
+    flight = uavsim.fly("catapult", overrides=[f"detector.kind={kind}", "duration=6"])
+    figure = launch.draw(Record(flight))
+    assert figure is not None
+    lines = {str(line.get_label()): line for line in figure.axes[4].lines}
+    value = next(np.asarray(line.get_ydata(), float) for name, line in lines.items() if name in ("sum S", "time held"))
+    limit = next(
+        np.asarray(line.get_ydata(), float) for name, line in lines.items() if name.startswith(("lim", "time t"))
+    )
+    ((x,), (y,)) = (np.asarray(values, float) for values in lines["recognised"].get_data())
+    launch_score = flight.score["launch"]
+    assert x == pytest.approx(1e3 * launch_score["latency"], abs=1e-6)
+    last = int(np.flatnonzero(np.isfinite(value))[-1])
+    assert value[last] == y >= limit[last] * (1.0 - 1e-5)
+    assert np.all(value[:last] < limit[:last])
+    assert np.isnan(value[last + 1 :]).all()

@@ -15,8 +15,9 @@ from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
 from uavsim.cli.survey import survey
+from uavsim.cli.tune import tune
 
-COMMANDS = (scenarios, fly, replay, sensors, bench, paper, roc, survey)
+COMMANDS = (scenarios, fly, replay, sensors, roc, tune, survey, paper, bench)
 """In the order of the help."""
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -43,9 +44,11 @@ def uavsim(
       uavsim replay output/catapult-7
       uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
       uavsim sensors bmp390
-      uavsim bench
-      uavsim paper
+      uavsim roc --detectors adaptive-cusum,multi-level-window,px4
+      uavsim tune catapult --false-alarms 0.1
       uavsim survey fw8
+      uavsim paper
+      uavsim bench
     """  # noqa: D301 (click reads \b: keep these lines)
     if version:
         from uavsim import __version__

@@ -59,7 +59,7 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
         If the flight ends before its time; its last chunks would not compare.
     """
     if scenario.plant.kind != AIRCRAFT:
-        raise ValueError(f"{scenario.name}: plant.kind = {scenario.plant.kind!r}: only flights in JSBSim have this cost")
+        raise ValueError(f"{scenario.name}: plant.kind = {scenario.plant.kind!r}: only a flight in JSBSim has it")
     leader = _TapedPlant(scenario)
     loop = Cosimulation(scenario, plant=leader)
     reference = JsbsimPlant(plant_settings(scenario, draw(scenario)))

@@ -1,4 +1,4 @@
-"""Figure of the launch: specific force and the detector's windows, whole on the left, single samples on the right."""
+"""Figure of the launch: specific force and what the detector makes of it, whole on the left, samples on the right."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch.settings import USES
+from uavsim.onboard.launch.settings import USES, reference
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
+from uavsim.views.launch_sum import HEIGHTS, draw_held, held
 from uavsim.views.marks import flag_all
 from uavsim.views.record import CROSSING_G, Array, Record, Stretch, known
 
@@ -24,21 +25,25 @@ LEAST_SAMPLES, UNDETECTED_SAMPLES = 0.05, 0.12  # s after the start, at least, a
 
 
 def draw(record: Record) -> "Figure | None":
-    """Specific force and the detector's windows around the launch."""
+    """Specific force and the detector's windows, or its sum, around the launch."""
     if record.start is None or record.launch is None or not record.has("accelerometer"):
         return None
     if record.plant in ("centrifuge", "wind-tunnel"):  # loads that come over seconds, or none
         return None
-    windows, origin = record.has("detector"), record.start
-    heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else ())
+    kind, origin = record.settings("detector")["kind"], record.start
+    windows = record.has("detector") and kind.endswith("window")
+    heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else HEIGHTS.get(kind, ()))
     figure, axes = sheet(record.title, _words(record), heights, (1.5, 1.0), size=(11.5, 8.0))
     columns = list(zip(*axes, strict=True))
     stretches = (record.launch, _recognition(record, origin, record.launch))
+    state = held(record, record.launch[1]) if kind in HEIGHTS else None
     for column, stretch in zip(columns, stretches, strict=True):
         column[0].set_xlim(*(1e3 * (t - origin) for t in stretch))
         _force(column, record, stretch, origin)
         if windows:
             _draw_windows(column[2:], record, _windows(record, stretch, origin))
+        elif state is not None:
+            draw_held(column[2:], kind, state, stretch, origin)
     named = "true launch" if record.named("true launch") else "release" if record.release is not None else "detection"
     for one in axes[-1]:
         label(one, x=f"time since {named} (t = {origin:.3f} s), ms")
@@ -98,8 +103,10 @@ def levels(record: Record) -> dict[str, float]:
     used = USES[settings["kind"]]
     if "threshold" not in used:
         group: dict[str, Any] = next((settings[name] for name in used if isinstance(settings.get(name), dict)), {})
-        return {"level": group["reference"] / STANDARD_GRAVITY} if "reference" in group else {}
+        return {"c": group["reference"] / STANDARD_GRAVITY} if "reference" in group else {}
     threshold = settings["threshold"]
+    if "adaptive" in used:
+        return {"c": reference(threshold, settings["adaptive"].get("reference")) / STANDARD_GRAVITY}
     if "trigger" not in used:
         return {"level": threshold / STANDARD_GRAVITY}
     trigger = settings.get("trigger", threshold)

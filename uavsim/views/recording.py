@@ -1,7 +1,7 @@
 """What the detector found in somebody's recording: lines for the terminal, and the figure of the launch.
 
 The figure has the whole recording on the left, and on the right the first detection, or the greatest f_x if there is
-none, with the detector's windows below. Time is the log's own, in s.
+none, with the detector's windows below if it has any. Time is the log's own, in s.
 """
 
 from collections.abc import Sequence
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from uavsim.onboard.launch.settings import reference
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.curves import thin
 from uavsim.views.figure import BLACK, BLUE, GREY, LIGHT, RED, SKY, label, legend, save, sheet
@@ -71,13 +72,16 @@ def draw(flight: "Flight") -> "Figure":
     centre = found[0] if found else float(t[int(np.nanargmax(readings["fx"].to_numpy()))])
     whole = float(t[0]), float(t[-1])
     stretches: tuple[Stretch, Stretch] = (whole, (max(centre - BEFORE, whole[0]), min(centre + AFTER, whole[1])))
-    figure, axes = sheet(flight.scenario["name"], _words(flight), HEIGHTS, WIDTHS, size=(11.5, 7.0))
+    windows = flight.scenario["detector"]["kind"].endswith("window")
+    heights = HEIGHTS if windows else HEIGHTS[:-1]
+    figure, axes = sheet(flight.scenario["name"], _words(flight), heights, WIDTHS, size=(11.5, 7.0))
     columns = list(zip(*axes, strict=True))
     for column, stretch in zip(columns, stretches, strict=True):
         column[0].set_xlim(*stretch)
         _force(column, flight, stretch)
-        _windows(column[2], flight, stretch)
-        label(column[2], x="time of the log, s")
+        if windows:
+            _windows(column[2], flight, stretch)
+        label(column[-1], x="time of the log, s")
     for row, (left, beside) in enumerate(axes):
         label(left, ("specific force $f_x$, g", "$f_y$, $f_z$, g", "windows")[row])
         legend(beside)
@@ -111,6 +115,8 @@ def _force(column: "Sequence[Axes]", flight: "Flight", stretch: Stretch) -> None
 def _levels(detector: dict[str, Any]) -> dict[str, float]:
     """Level that the force is held against, m/s², by its name; none of the rules that have their own."""
     kind = detector["kind"]
+    if kind == "adaptive-cusum":
+        return {"reference": reference(detector["threshold"], detector["adaptive"].get("reference"))}
     group = next((detector[name] for name in ("cusum", "glr") if kind.startswith(name)), None)
     if group is not None:
         return {"reference": group["reference"]}

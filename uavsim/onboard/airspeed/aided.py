@@ -28,11 +28,10 @@ from math import expm1, inf, log1p, nan, sqrt
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MAX_TEMPERATURE, MIN_TEMPERATURE
 from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
-from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
+from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.rest_force import RestForce
-from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 
@@ -41,9 +40,10 @@ TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
 VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
 PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
+WATCH = 2.0  # s after the recognition, from which the total port is watched
+FOLLOWED, UNSEEN = 1.0, 0.3  # s and m/s: how long the gust has been missed, and what else, when a port is flagged
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
-GRAVITY = 9.80665  # m/s², ISO 80000-3
 GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
 OLDEST = 0.05  # s; a reading that is further behind the filter is not taken
 ALONE = 0.02  # s; a static pressure so far ahead of the filter comes without a total pressure: it goes on by itself
@@ -73,16 +73,18 @@ class AidedFilter:
         It; of no meaning before.
     time : float
         The instant that it stands at, s.
+    port : PortMonitor
+        Of the total pressure's port: flagged, it is not taken, and the airspeed coasts and is not valid.
     """
 
     aided = True
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_held",
-        "_held_count", "_measured", "_misses", "_noise", "_on_rail", "_patience", "_raw_scale", "_rest", "_rows",
-        "_same", "_scale_variance", "_settings", "_settled", "_static_age", "_static_variance", "_t", "_t_static",
-        "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age", "_total_variance",
-        "_turning", "_u", "_w", "_waiting", "_wind", "energy", "flying", "time",
+        "_density", "_force", "_gained", "_gas", "_gust", "_heat", "_held", "_held_count", "_measured", "_misses",
+        "_noise", "_on_rail", "_patience", "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings",
+        "_settled", "_static_age", "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end",
+        "_temperature", "_temperature_share", "_total_age", "_total_variance", "_u", "_w", "_waiting", "_watch_from",
+        "energy", "flying", "port", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -97,8 +99,8 @@ class AidedFilter:
         self._total_variance, self._static_variance = noise.total_sd**2, noise.static_sd**2
         self._scale_variance = noise.accelerometer_scale_sd**2
         aided = settings.aided
-        self._gust, self._ground = gust_density(aided, 0.0), nan
-        self._gust_falls = aided.gust_height > 0.0 and aided.gust_sd > 0.0
+        gust = max(aided.gust_sd, aided.gust_floor)
+        self._gust = 2.0 * gust * gust / aided.gust_length
         self._same = SAME * noise.accelerometer_sd / sqrt(max(1.0, noise.total_window * noise.accelerometer_rate))
         self._held, self._held_count, self._force = 0.0, 1, 0.0
         self._on_rail = aided.on_rail
@@ -109,6 +111,7 @@ class AidedFilter:
         self._temperature = self._density = self._gas = self._heat = nan
         self._tare = 0.0
         self._settled, self._patience, self._misses = False, inf, 0
+        self.port, self._watch_from = PortMonitor(aided.bias_sd), inf
         self._u = self._w = 0.0
         self.energy = self._begin(-inf)
 
@@ -116,7 +119,7 @@ class AidedFilter:
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force; see `Estimator`."""
-        self._gained.add(t - self._noise.accelerometer_lag, fx)
+        self._gained.add(t, fx)
         if not self.flying:
             self._rest.add(t, fx)
 
@@ -141,16 +144,12 @@ class AidedFilter:
         self._u, self._w = self._gained.at(start)
         self._held, self._held_count = 0.0, 1
         self._settled, self._patience = False, t + PATIENCE
+        self.port, self._watch_from = PortMonitor(self._settings.aided.bias_sd), t + WATCH
         self._t_total = self._t_static = -inf
         for row in self._rows:
             if row[4] - self._total_age > start or row[5] - self._static_age > start:
                 self._fly(*row)
         self._rows.clear()
-
-    def unfolding(self, t: float) -> None:
-        """For a while trust the integral of f_x less."""
-        aided = self._settings.aided
-        self._folded = (t, t + aided.unfolding_time, aided.unfolding_rate**2)
 
     def rearmed(self, t: float) -> None:
         """Go back to waiting: the launch was none."""
@@ -166,10 +165,8 @@ class AidedFilter:
         self._measured = warm > 0.0
         self._warm(warm if self._measured else airdata.STANDARD_TEMPERATURE)
         rest, rest_sd = self._rest.result(start)
-        self._folded = (inf, inf, 0.0)
-        wind_sd = self._look_at_wind(start, tare_variance, static / self._gas)
-        core = self.core(
-            speed_sd=wind_sd,
+        return self.core(
+            speed_sd=self._settings.wind_sd,
             rest_force=rest,
             rest_sd=rest_sd,
             bias_sd=aided.bias_sd,
@@ -183,25 +180,6 @@ class AidedFilter:
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
         )
-        core.v, self._ground = self._wind, core.p
-        return core
-
-    def _look_at_wind(self, start: float, tare_variance: float, density: float) -> float:
-        """Find the airspeed on the rail by the pressures there; return its standard deviation, m/s."""
-        each = self._total_variance + self._static_variance
-        self._wind, sd = 0.0, inf
-        if self._tare_end > -inf:
-            self._wind, sd = wind_at_rest(
-                self._rows,
-                start=self._tare_end,
-                end=start,
-                tare=self._tare,
-                variance=tare_variance,
-                each=each,
-                density=density,
-            )
-        self._turning = turning(self._wind, each, density)
-        return min(sd, self._settings.wind_sd)
 
     # -- flight ------------------------------------------------------------------------------------------------------
 
@@ -219,8 +197,6 @@ class AidedFilter:
         else:
             temperature = nan
         self._density = energy.p / self._gas
-        if self._gust_falls:
-            self._gust = gust_density(self._settings.aided, (self._ground - energy.p) / (GRAVITY * self._density))
         nis_total = nis_static = nan
         new_static = t_static > self._t_static
         if t_total > self._t_total:
@@ -258,9 +234,6 @@ class AidedFilter:
         gained = u - self._u
         force = self._force = gained / dt - self._rest.mean
         variance = self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
-        begin, end, rate = self._folded
-        if to > begin and self.time < end:
-            variance += rate * (min(to, end) - max(self.time, begin))
         energy.predict(dt, gained, variance, self._density, force > self._on_rail)
         self.time, self._u, self._w = to, u, w
 
@@ -273,6 +246,7 @@ class AidedFilter:
         self._misses = 0 if energy.taken else self._misses + 1
         if self._misses >= PERSISTENT:  # no spike: the port itself is in other air
             energy.pp += energy.innovation * energy.innovation
+            energy.static(reading, self._static_variance, 0.0)
             self._misses = 0
         return nis
 
@@ -291,26 +265,37 @@ class AidedFilter:
             slope = self._density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * self._gust * abs(energy.v) * behind
-        return energy.total(reading - self._tare - noise.acceleration * pushed, variance, pushed, self._heat)
+        port, tared = self.port, reading - self._tare - noise.acceleration * pushed
+        if port.faulty:
+            self._coast(end, reading, tared, variance)
+            return nan
+        nis = energy.total(tared, variance, pushed, self._heat)
+        if not energy.taken and self.time < self._watch_from:  # so early it is rather the filter that is wrong
+            slope = self._density * (energy.v if energy.v > SLOWEST else SLOWEST)
+            energy.vv += (energy.innovation / slope) ** 2
+        if self.time > self._watch_from and port.add(end, reading, energy.innovation, nis, variance, energy.b):
+            energy.astray(self._gust * abs(energy.v) * FOLLOWED + UNSEEN * UNSEEN, self._settings.aided.bias_sd)
+        return nis
+
+    def _coast(self, end: float, reading: float, tared: float, variance: float) -> None:
+        """Compare a flagged port with the coasting filter; take it back when they have agreed for long enough."""
+        energy = self.energy
+        excess = max(0.0, (tared - energy.p) / energy.p)
+        speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
+        slope = self._density * (speed if speed > SLOWEST else SLOWEST)
+        difference = speed - energy.v
+        if self.port.coast(end, reading, difference, energy.vv + 2.0 * variance / (slope * slope)):
+            energy.vv += difference * difference
 
     def _settle(self, reading: float) -> bool:
         """Whether the push has brought V far enough from 0 for a total pressure; if it never does, take V from that."""
         energy = self.energy
-        if energy.v * abs(energy.v) < ONE_SIDED * energy.vv:
+        if energy.v * energy.v < ONE_SIDED * energy.vv:
             if self.time < self._patience:
                 return False
             excess = max(0.0, (reading - self._tare - energy.p) / energy.p)
             speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
             energy.restart(speed, max(energy.vv, speed * speed / ONE_SIDED))
-        elif self._wind > 0.0:
-            if energy.v < self._turning and self.time < self._patience:
-                return False
-            wind, self._wind = self._wind, 0.0
-            excess = max(0.0, (reading - self._tare - energy.p) / energy.p)
-            speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
-            if 2.0 * speed < energy.v + abs(energy.v - 2.0 * wind):  # it was a tailwind
-                energy.v -= 2.0 * wind
-                return False
         self._settled = True
         return True
 
@@ -345,9 +330,6 @@ class AidedFilter:
         speed = energy.v + gained - dt * drift
         variance = energy.vv + dt * (dt * (energy.bb + 2.0 * energy.bs + energy.ss) - 2.0 * (energy.vb + energy.vs))
         variance += self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
-        begin, end, rate = self._folded
-        if t > begin and self.time < end:
-            variance += rate * (min(t, end) - max(self.time, begin))
         static = energy.p - self._density * energy.v * energy.s * dt
         if speed < 0.0:  # noqa: PLR1730
             speed = 0.0
@@ -355,4 +337,5 @@ class AidedFilter:
         sd = sqrt(max(variance, 0.0) + share * share)
         y = 1.0 + speed * speed / self._heat
         total = static * y * y * y * sqrt(y)
-        return t, speed, sd, raw, total, static, speed >= VALID * sd and self._measured, nis_total, nis_static
+        valid = speed >= VALID * sd and self._measured and not self.port.faulty
+        return t, speed, sd, raw, total, static, valid, nis_total, nis_static

@@ -165,6 +165,12 @@ class EnergyFilter:
         self.v, self.vv = speed, variance
         self.vb = self.vp = self.vs = self.vd = self.vk = 0.0
 
+    def astray(self, variance: float, bias_sd: float) -> None:
+        """Doubt what a bad port has taught: V by a variance more, m²/s², and b as at the start."""
+        self.vv += variance
+        self.b, self.bb = 0.0, bias_sd * bias_sd
+        self.vb = self.bp = self.bs = self.bd = self.bk = 0.0
+
     def static(self, reading: float, variance: float, ahead: float) -> float:
         """Take a static pressure.
 

@@ -12,8 +12,9 @@ limit about as often as exp(-2 δ h/(σ² T)), T the sample's period: what is fa
 
     h_min   9 g·ms: one shock of 5 ms adds 5 g·ms, its ringing less, and two that touch no more than 10
     κ       15 ms: r = 0.9 g in noise of 1 g gives 13.4 g·ms, where a run on the centrifuge at 4.1 g passes c by noise
-    h_max   16 g·ms: what vibration of 2-3 g needs, and a launch shorter than 0.1 s still gives
+    h_max   16 g·ms: vibration of 2-3 g would ask for 19-22, more than a weak launch of 0.1 s adds
 
+At rates below 111 Hz h_min is what one sample adds, so that two are needed, down to 62 Hz, where it has reached h_max.
 It begins rough, with h_max, so that nothing is decided soon before it is known to be smooth, and what is odd about a
 sample (NaN, a shock) raises the limit. m follows at a bounded rate, so that a shock is forgotten soon. Sources: as
 `cusum`; the exponent is Lorden's, Ann. Math. Statist. 42 (1971) 1897; the limit's rule and its numbers are this
@@ -38,7 +39,7 @@ class AdaptiveCusum(OneAxis):
     rise, fall : float
         Bounds of what a sample adds and takes off, m/s²; 1 g and 1.5 g.
     limit, highest : float
-        h_min and h_max, m/s; 9 and 16 g·ms.
+        h_min and h_max, m/s; 9 and 16 g·ms. h_min is at least what one sample adds, as far as h_max allows.
     gain : float
         κ, limit over roughness, s.
     mean, memory : float
@@ -111,7 +112,8 @@ class AdaptiveCusum(OneAxis):
         require(all(0.0 < x < inf for x in (mean, memory)), "mean and memory must be above 0 s")
         require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
         self._reference, self._rise, self._fall = reference, rise, -fall
-        self._least, self._highest = limit * ROUNDING, highest * ROUNDING  # reached is not passed, as in `Cusum`
+        alone = min(rise / rate, highest)  # what one sample adds
+        self._least, self._highest = max(limit, alone) * ROUNDING, highest * ROUNDING  # reached is not passed
         self._gain, self._most = gain, 2.0 * highest / gain
         self._follow, self._forget = 1.0 / mean, 1.0 / max(memory, GAP_PERIODS * ROUNDING / rate)
         super().__init__(rate, axis)

@@ -229,7 +229,8 @@ class ArduPilot(Periodic):
     def _run(self, f: float, elapsed: float) -> bool:
         a = f - self._mean.before
         self._values = (*self._values[1:], a if a == a else 0.0)
-        self.triggered = sum(self._values) >= 5.0 * self._acceleration
+        a, b, c, d, e = self._values  # not sum(), which compensates its rounding in some versions of Python
+        self.triggered = a + b + c + d + e >= 5.0 * self._acceleration
         return self.triggered and self._delay <= 0.0
 
 

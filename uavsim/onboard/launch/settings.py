@@ -355,6 +355,11 @@ def _field_need(s: DetectorSettings, push: float) -> tuple[float, str, float] | 
     return None
 
 
+def reference(threshold: float, own: float | None) -> float:
+    """Where the sum of "adaptive-cusum" begins to grow, m/s²: its own setting, else as far below the threshold."""
+    return threshold - BELOW if own is None else own
+
+
 def build(settings: DetectorSettings, rate: Annotated[float, Gt(0.0)]) -> Detector:
     """Make the detector for an accelerometer of the given rate.
 
@@ -393,8 +398,8 @@ def build(settings: DetectorSettings, rate: Annotated[float, Gt(0.0)]) -> Detect
     group = values.get(USES[s.kind][0])
     if is_dataclass(group) and not isinstance(group, type):
         values = asdict(group)
-    if s.kind == "adaptive-cusum" and s.adaptive.reference is None:
-        values["reference"] = s.threshold - BELOW
+    if s.kind == "adaptive-cusum":
+        values["reference"] = reference(s.threshold, s.adaptive.reference)
     return ONE_AXIS[s.kind](rate, axis=s.axes[0], **values)
 
 

@@ -1,0 +1,27 @@
+"""Batch evaluation over an hour-scale record: every kind as it is shipped, against its own step, sample by sample."""
+
+from typing import get_args
+
+import pytest
+
+from uavsim.onboard.launch import DetectorSettings, Kind, build
+from uavsim.studies.detections import BatchDetector
+from uavsim.studies.false_alarms import DISTURBANCES
+
+pytestmark = pytest.mark.slow
+
+RATE = 1000.0  # Hz
+
+
+@pytest.mark.parametrize("name", list(DISTURBANCES))
+@pytest.mark.parametrize("kind", get_args(Kind))
+def test_ten_minutes_of_each_class_give_the_alarms_of_step(kind: Kind, name: str) -> None:
+    """600 000 samples or more, with the vibration of every spell; no tolerance."""
+    chosen = DetectorSettings(kind=kind)
+    force = DISTURBANCES[name].piece(7, 2, RATE, (0, 1, 2))
+    detector, found = build(chosen, RATE), []
+    for k, (fx, fy, fz) in enumerate(force.tolist()):
+        if detector.step(k / RATE, fx, fy, fz):
+            found.append(k)
+            detector.reset()
+    assert BatchDetector(chosen, RATE).alarms(force).tolist() == found

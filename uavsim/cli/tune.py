@@ -1,0 +1,72 @@
+"""`uavsim tune`: a launch detector's settings for a scenario and a budget of false alarms."""
+
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, folder, user_input
+from uavsim.cli.roc import load
+
+
+def tune(
+    scenario: Annotated[str, typer.Argument(help="A packaged name, a TOML file or a flight's folder.")] = "catapult",
+    *,
+    detector: Annotated[str | None, typer.Option(metavar="KIND", help="Kind; the scenario's without it.")] = None,
+    false_alarms: Annotated[float, typer.Option(metavar="PER_HOUR", help="Budget in the disturbance mix, 1/h.")] = 0.1,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Tuned on; the next one scores.")] = 1,
+    trials: Annotated[int, typer.Option(min=10, max=20_000, help="Launches; twice as many score.")] = 200,
+    workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder, or file that ends in .toml, to write.")] = None,
+    overwrite: Overwrite = False,
+) -> None:
+    """Find a launch detector's settings.
+
+    Most of the scenario's launches detected, then soonest, with no more false alarms than the budget; scored on seeds
+    that were not tuned on. Prints the lines for a scenario's file, and writes the scenario with them.
+
+    Example: uavsim tune weak-launch --detector cusum --false-alarms 0.1 --out output/tuned
+
+    Example: uavsim tune catapult --out tuned.toml && uavsim fly tuned.toml
+    """
+    from uavsim.studies import tuning
+    from uavsim.views import terminal
+    from uavsim.views import tuning as view
+
+    kind = kind_of(detector)
+    loaded = load(scenario)
+    with user_input():
+        tuning.hours_for(false_alarms)
+
+    def place() -> Path:
+        if out is not None and out.suffix == ".toml":
+            view.check(out, overwrite=overwrite)
+            return out
+        return folder(out, f"tune-{loaded.name}-{seed}", overwrite=overwrite)
+
+    place()  # before anything is computed in vain
+    with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
+        found = tuning.tune(
+            loaded,
+            kind,  # type: ignore[arg-type]
+            budget=false_alarms,
+            seed=seed,
+            trials=trials,
+            workers=workers,
+            progress=bar.show,
+        )
+    written = view.save(found, place(), overwrite=overwrite)
+    view.print_tuned(found)
+    terminal.say(f"written to {written}")
+
+
+def kind_of(name: str | None) -> str | None:
+    """Kind of detector of a name, None without it."""
+    from uavsim.studies.operating import KINDS
+
+    if name is None or name in KINDS:
+        return name
+    near = get_close_matches(name, KINDS, n=1, cutoff=0.4)
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(KINDS)}"
+    raise typer.BadParameter(f"unknown detector {name[:40]!r}; {hint}", param_hint="--detector")
