@@ -28,10 +28,12 @@ from math import expm1, inf, log1p, nan, sqrt
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MAX_TEMPERATURE, MIN_TEMPERATURE
 from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
+from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.rest_force import RestForce
+from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 
@@ -44,6 +46,8 @@ WATCH = 2.0  # s after the recognition, from which the total port is watched
 FOLLOWED, UNSEEN = 1.0, 0.3  # s and m/s: how long the gust has been missed, and what else, when a port is flagged
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
+MODEL = 0.1  # Pa, what the model of a pressure is off by, whatever its sensor: 0.1 ms of the stroke's rise
+GRAVITY = 9.80665  # m/s², ISO 80000-3
 GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
 OLDEST = 0.05  # s; a reading that is further behind the filter is not taken
 ALONE = 0.02  # s; a static pressure so far ahead of the filter comes without a total pressure: it goes on by itself
@@ -80,11 +84,11 @@ class AidedFilter:
     aided = True
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_density", "_force", "_gained", "_gas", "_gust", "_heat", "_held", "_held_count", "_measured", "_misses",
-        "_noise", "_on_rail", "_patience", "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings",
-        "_settled", "_static_age", "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end",
-        "_temperature", "_temperature_share", "_total_age", "_total_variance", "_u", "_w", "_waiting", "_watch_from",
-        "energy", "flying", "port", "time",
+        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_held",
+        "_held_count", "_measured", "_misses", "_noise", "_on_rail", "_patience", "_raw_scale", "_rest", "_rows",
+        "_same", "_scale_variance", "_settings", "_settled", "_static_age", "_static_variance", "_t", "_t_static",
+        "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age", "_total_variance",
+        "_turning", "_u", "_w", "_waiting", "_watch_from", "_wind", "energy", "flying", "port", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -96,11 +100,12 @@ class AidedFilter:
         self._rows: deque[Row] = deque(maxlen=ROWS)
         self._total_age = 0.5 * noise.total_window + noise.total_lag
         self._static_age = 0.5 * noise.static_window + noise.static_lag
-        self._total_variance, self._static_variance = noise.total_sd**2, noise.static_sd**2
+        self._total_variance = max(noise.total_sd, MODEL) ** 2
+        self._static_variance = max(noise.static_sd, MODEL) ** 2
         self._scale_variance = noise.accelerometer_scale_sd**2
         aided = settings.aided
-        gust = max(aided.gust_sd, aided.gust_floor)
-        self._gust = 2.0 * gust * gust / aided.gust_length
+        self._gust, self._ground = gust_density(aided, 0.0), nan
+        self._gust_falls = aided.gust_height > 0.0 and aided.gust_sd > 0.0
         self._same = SAME * noise.accelerometer_sd / sqrt(max(1.0, noise.total_window * noise.accelerometer_rate))
         self._held, self._held_count, self._force = 0.0, 1, 0.0
         self._on_rail = aided.on_rail
@@ -119,7 +124,7 @@ class AidedFilter:
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force; see `Estimator`."""
-        self._gained.add(t, fx)
+        self._gained.add(t - self._noise.accelerometer_lag, fx)
         if not self.flying:
             self._rest.add(t, fx)
 
@@ -151,6 +156,11 @@ class AidedFilter:
                 self._fly(*row)
         self._rows.clear()
 
+    def unfolding(self, t: float) -> None:
+        """For a while trust the integral of f_x less."""
+        aided = self._settings.aided
+        self._folded = (t, t + aided.unfolding_time, aided.unfolding_rate**2)
+
     def rearmed(self, t: float) -> None:
         """Go back to waiting: the launch was none."""
         self.flying = False
@@ -165,8 +175,10 @@ class AidedFilter:
         self._measured = warm > 0.0
         self._warm(warm if self._measured else airdata.STANDARD_TEMPERATURE)
         rest, rest_sd = self._rest.result(start)
-        return self.core(
-            speed_sd=self._settings.wind_sd,
+        self._folded = (inf, inf, 0.0)
+        wind_sd = self._look_at_wind(start, tare_variance, static / self._gas)
+        core = self.core(
+            speed_sd=wind_sd,
             rest_force=rest,
             rest_sd=rest_sd,
             bias_sd=aided.bias_sd,
@@ -180,6 +192,25 @@ class AidedFilter:
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
         )
+        core.v, self._ground = self._wind, core.p
+        return core
+
+    def _look_at_wind(self, start: float, tare_variance: float, density: float) -> float:
+        """Find the airspeed on the rail by the pressures there; return its standard deviation, m/s."""
+        each = self._total_variance + self._static_variance
+        self._wind, sd = 0.0, inf
+        if self._tare_end > -inf:
+            self._wind, sd = wind_at_rest(
+                self._rows,
+                start=self._tare_end,
+                end=start,
+                tare=self._tare,
+                variance=tare_variance,
+                each=each,
+                density=density,
+            )
+        self._turning = turning(self._wind, each, density)
+        return min(sd, self._settings.wind_sd)
 
     # -- flight ------------------------------------------------------------------------------------------------------
 
@@ -197,6 +228,8 @@ class AidedFilter:
         else:
             temperature = nan
         self._density = energy.p / self._gas
+        if self._gust_falls:
+            self._gust = gust_density(self._settings.aided, (self._ground - energy.p) / (GRAVITY * self._density))
         nis_total = nis_static = nan
         new_static = t_static > self._t_static
         if t_total > self._t_total:
@@ -234,6 +267,9 @@ class AidedFilter:
         gained = u - self._u
         force = self._force = gained / dt - self._rest.mean
         variance = self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
+        begin, end, rate = self._folded
+        if to > begin and self.time < end:
+            variance += rate * (min(to, end) - max(self.time, begin))
         energy.predict(dt, gained, variance, self._density, force > self._on_rail)
         self.time, self._u, self._w = to, u, w
 
@@ -290,12 +326,21 @@ class AidedFilter:
     def _settle(self, reading: float) -> bool:
         """Whether the push has brought V far enough from 0 for a total pressure; if it never does, take V from that."""
         energy = self.energy
-        if energy.v * energy.v < ONE_SIDED * energy.vv:
+        if energy.v * abs(energy.v) < ONE_SIDED * energy.vv:
             if self.time < self._patience:
                 return False
             excess = max(0.0, (reading - self._tare - energy.p) / energy.p)
             speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
             energy.restart(speed, max(energy.vv, speed * speed / ONE_SIDED))
+        elif self._wind > 0.0:
+            if energy.v < self._turning and self.time < self._patience:
+                return False
+            wind, self._wind = self._wind, 0.0
+            excess = max(0.0, (reading - self._tare - energy.p) / energy.p)
+            speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
+            if 2.0 * speed < energy.v + abs(energy.v - 2.0 * wind):  # it was a tailwind
+                energy.v -= 2.0 * wind
+                return False
         self._settled = True
         return True
 
@@ -330,6 +375,9 @@ class AidedFilter:
         speed = energy.v + gained - dt * drift
         variance = energy.vv + dt * (dt * (energy.bb + 2.0 * energy.bs + energy.ss) - 2.0 * (energy.vb + energy.vs))
         variance += self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
+        begin, end, rate = self._folded
+        if t > begin and self.time < end:
+            variance += rate * (min(t, end) - max(self.time, begin))
         static = energy.p - self._density * energy.v * energy.s * dt
         if speed < 0.0:  # noqa: PLR1730
             speed = 0.0
