@@ -71,10 +71,10 @@ def draw(scenario: Scenario, index: int = 0) -> Draws:
     )
 
 
-def tare_window(scenario: Scenario, draws: Draws) -> airspeed.TareWindow | None:
+def tare_window(scenario: Scenario, release_time: float) -> airspeed.TareWindow | None:
     """When the tare is taken, s: by the crew's countdown it is over when the cover is off."""
     air = scenario.air_data
-    end = draws.release_time - air.cover_off
+    end = release_time - air.cover_off
     return None if air.tare == "none" else (end - air.tare_duration, end)
 
 
@@ -106,8 +106,7 @@ class Onboard:
     which of the two it came from.
     """
 
-    def __init__(self, scenario: Scenario, draws: Draws) -> None:
-        release_time = draws.release_time
+    def __init__(self, scenario: Scenario, release_time: float, calibration: tuple[float, float]) -> None:
         rate = scenario.accelerometer.description().rate
         self._release_time = release_time
         self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
@@ -115,7 +114,7 @@ class Onboard:
             scenario.flight_computer,
             self._detector,
             airspeed.build(
-                believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws)
+                believed_air(scenario), believed_noise(scenario, calibration), tare_window(scenario, release_time)
             ),
             rate,
             launch_axis(scenario.plant.kind, scenario.detector.axes),
@@ -195,7 +194,7 @@ class Cosimulation:
             vibration=None if self.head.full else self.vibration,
             air_temperature=self.plant.air_temperature,
         )
-        self.onboard = Onboard(scenario, self.draws)
+        self.onboard = Onboard(scenario, release, self.draws.calibration)
         self.readings: list[float] = []  # flat: plain floats cost the collector nothing
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
@@ -351,7 +350,7 @@ def replay(flight: Flight) -> Flight:
     """
     scenario = Scenario.from_dict(flight.scenario)
     draws = draw(scenario)
-    onboard = Onboard(scenario, draws)
+    onboard = Onboard(scenario, draws.release_time, draws.calibration)
     readings = flight.accelerometer.to_numpy().tolist()
     air: list[AirReading] = [(a, b, c, d, e, f) for a, b, c, d, e, f in flight.air_data.to_numpy().tolist()]
     next_air = 0

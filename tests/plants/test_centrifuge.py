@@ -126,7 +126,7 @@ def test_15_g_is_a_launch_once(strong: Flight) -> None:
     assert all(r["met"] for r in strong.score["requirements"])
     assert held(strong) == pytest.approx(15.15, abs=0.01)
     events = [e["event"] for e in strong.events]
-    assert events == ["launch_detected", "stroke_end", "wings_commanded", "motor_on"]
+    assert events == ["launch_detected", "stroke_end", "wings_commanded", "motor_on", "airspeed_lost"]
 
 
 def held(flight: Flight) -> float:

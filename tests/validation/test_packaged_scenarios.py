@@ -89,7 +89,7 @@ def test_two_seeds_are_two_launches(catapult_50: Batch, figure: Figure) -> None:
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_with_a_quieter_sensor_the_report_says_that_this_filter_cannot_help(seed: int, figure: Figure) -> None:
     """BMP581: its noise is below the lag of a filter with a fixed gain in the stroke."""
-    presets = [f"air_data.{channel}.preset=bmp581" for channel in ("total", "static")]
+    presets = ["estimator.kind=paper"] + [f"air_data.{channel}.preset=bmp581" for channel in ("total", "static")]
     flight = uavsim.fly("catapult", seed=seed, overrides=presets)
     assert flight.score["outcome"] == "cruise"
     figure("reduction over the whole flight, BMP581", [flight.score["airspeed"]["reduction_percent"]], "%", high=0.0)

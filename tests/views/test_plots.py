@@ -249,7 +249,9 @@ def batch_of(flights: list[Flight], *, complete: bool = True) -> Batch:
         for f in flights
     ]
     rng = np.random.default_rng(7)
-    traces = [ErrorTrace(f.score["seed"], 0.1 * rng.random(40), 0.2 * rng.random(40)) for f in flights]
+    traces = [
+        ErrorTrace(f.score["seed"], 0.1 * rng.random(40), 0.2 * rng.random(40), rng.chisquare(1, 40)) for f in flights
+    ]
     kept = {flights[0].score["seed"]: flights[0]}
     return Batch(Scenario(name="made up"), pd.DataFrame(rows), traces, kept, complete, 1.5)
 
@@ -275,7 +277,7 @@ def test_a_batch_is_written_with_all_its_parts(several: Batch, tmp_path: Path, m
     assert load(target / "flights" / "1").score == several.kept[1].score
     assert len(drawn) == 1
     names = {path.name for path in (target / "plots").iterdir()}
-    assert names == {"latency.png", "airspeed_error.png", "outcomes.png"}
+    assert names == {"latency.png", "airspeed_error.png", "consistency.png", "outcomes.png"}
     for name in names:
         check_png(target / "plots" / name)
     assert [path.name for path in target.parent.iterdir()] == ["three"]
@@ -303,7 +305,7 @@ def test_a_batch_is_whole_or_not_there(several: Batch, tmp_path: Path, monkeypat
 
 def test_missed_launches_have_no_latency_to_draw(tmp_path: Path) -> None:
     missed = batch_of([made_up(push=36.0)], complete=False)
-    missed.traces[0] = ErrorTrace(1, np.empty(0), np.empty(0))
+    missed.traces[0] = ErrorTrace(1, *(np.empty(0) for _ in range(3)))
     assert [path.name for path in batch.save_batch_plots(missed, tmp_path)] == ["outcomes.png"]
 
 

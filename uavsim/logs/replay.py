@@ -15,7 +15,10 @@ from uavsim.onboard import launch
 
 PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
 
-_AIRSPEED = ("rmse", "rmse_raw", "reduction_percent", "bias", "max_error", "nees_mean", "coverage_95", "valid_fraction")
+_AIRSPEED = (
+    *("rmse", "rmse_raw", "reduction_percent", "bias", "max_error", "nees_mean", "nis_mean", "whiteness"),
+    *("coverage_95", "coverage_1_sigma", "coverage_2_sigma", "coverage_3_sigma", "valid_fraction"),
+)
 _PRESSURE = ("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean")
 _FLIGHT = (
     *("rail_exit_time", "rail_exit_speed", "wing_start_time", "wing_out_time"),

@@ -22,7 +22,14 @@ from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.beliefs import believed_air, believed_noise
 from uavsim.cosim import draw, tare_window
 from uavsim.flight import Flight
-from uavsim.onboard.airspeed import AidedFilter, Estimate, EstimatorSettings, NoiseModel, TareWindow
+from uavsim.onboard.airspeed import (
+    AidedFilter,
+    Estimate,
+    EstimatorSettings,
+    NoiseModel,
+    PaperFilter,
+    TareWindow,
+)
 from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
 from uavsim.onboard.airspeed.rest_wind import HIDDEN, VISIBLE
 from uavsim.scenario import Scenario
@@ -34,6 +41,7 @@ Array = NDArray[np.float64]
 STEP = 2e-3  # s, of the common time axis of courses
 LEAD = 0.6  # s before the true launch from which a course is kept; the filter starts later
 SLOWEST = 0.5  # m/s; below it the climb's share of gravity is that of the rail
+NORMAL_95 = 1.959964  # quantile of 97.5 %
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +84,7 @@ def replayed(flight: Flight) -> Array:
     scenario = Scenario.from_dict(flight.scenario)
     draws = draw(scenario)
     estimator = RememberingFilter(
-        believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws)
+        believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws.release_time)
     )
     launch = flight.score["launch"]["detected_time"]
     wings = next((e["t"] for e in flight.events if e["event"] == "wings_commanded"), None)
@@ -164,3 +172,126 @@ def true_airspeed(flight: Flight, time: Array) -> Array:
     """Airspeed at some times, m/s."""
     found: Array = np.interp(time, flight.truth["t"].to_numpy(), flight.truth["airspeed"].to_numpy())
     return found
+
+
+# -- an ensemble -----------------------------------------------------------------------------------------------------
+
+PHASES = ("launch", "detected", "stroke", "unfolding", "climb", "cruise")
+LAUNCH = 0.3  # s after the true launch
+UNFOLDED = 0.1  # s after the wing is out, in which what it has shaken dies away
+CLIMB = 2.0  # s after the wing is out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Held:
+    """One flight held against the truth.
+
+    Attributes
+    ----------
+    flight : Flight
+    rows : ndarray
+        Shape (r, 4): time since the true launch, s, error of the estimate, its standard deviation, and error of the
+        raw airspeed, m/s.
+    course : Course
+    edges : dict
+        First and last time of each of `PHASES`, s: "launch", the first 0.3 s; "detected", the same from the recognition
+        on; "stroke" as in the score; "unfolding", from the rail's end until the wing is out; "climb", two seconds from
+        there; "cruise", the rest.
+    hold : float
+        Rms of the true airspeed about the set one from when it first reaches it, m/s.
+    """
+
+    flight: Flight
+    rows: Array
+    course: Course
+    edges: dict[str, tuple[float, float]]
+    hold: float
+
+
+def hold(flight: Flight) -> Held:
+    """Hold a flight that has launched and unfolded its wings against the truth."""
+    launch, end = flight.score["launch"], flight.score["flight"]
+    true = launch["true_time"]
+    found = replayed(flight)
+    speed = true_airspeed(flight, found[:, 0])
+    rows = np.column_stack([found[:, 0] - true, found[:, 1] - speed, found[:, 2], found[:, 3] - speed])
+    out, off = end["wing_out_time"] - true, end["rail_exit_time"] - true
+    edges = {
+        "launch": (0.0, LAUNCH),
+        "detected": (launch["latency"], LAUNCH),
+        "stroke": (0.05, off),
+        "unfolding": (off, out + UNFOLDED),
+        "climb": (out + UNFOLDED, out + CLIMB),
+        "cruise": (out + CLIMB, np.inf),
+    }
+    aim = flight.scenario["flight_computer"]["airspeed"]
+    flown = flight.truth["airspeed"].to_numpy()
+    reached = flown[int(np.argmax(flown >= aim)) :]
+    return Held(flight, rows, course(flight), edges, float(np.sqrt(np.mean((reached - aim) ** 2))))
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseFigures:
+    """Of all flights together in one phase: rms errors and the bound's, m/s; NEES; share within ±1.96 sd."""
+
+    rmse: float
+    raw: float
+    bound: float
+    nees: float
+    coverage: float
+
+    @property
+    def ratio(self) -> float:
+        """RMSE over the bound."""
+        return self.rmse / self.bound
+
+    @property
+    def reduction(self) -> float:
+        """By how much the RMSE is below that of the raw airspeed, %."""
+        return 100.0 * (1.0 - self.rmse / self.raw)
+
+
+def figures(flights: list[Held]) -> dict[str, PhaseFigures]:
+    """Put an ensemble of flights of one scenario against its bound, phase by phase."""
+    least_t, least = bound(flights[0].flight, together([f.course for f in flights]))
+    found = {}
+    for phase in PHASES:
+        rows = np.concatenate([_part(f, phase) for f in flights])
+        t, error, sd, raw = rows[np.isfinite(rows).all(axis=1)].T
+        allowed = np.interp(t, least_t, least)
+        found[phase] = PhaseFigures(
+            rmse=_rms(error),
+            raw=_rms(raw),
+            bound=_rms(allowed),
+            nees=float(np.mean((error / sd) ** 2)),
+            coverage=float(np.mean(np.abs(error) <= NORMAL_95 * sd)),
+        )
+    return found
+
+
+def paper_rmse(flights: list[Held], gain: float, phase: str = "launch") -> float:
+    """RMSE of the published filter on the same readings, m/s, with a gain on the total pressure."""
+    errors = []
+    for held in flights:
+        scenario = Scenario.from_dict(held.flight.scenario)
+        draws = draw(scenario)
+        settings = EstimatorSettings(kind="paper", gain_total=gain)
+        estimator = PaperFilter(
+            settings, believed_noise(scenario, draws.calibration), tare_window(scenario, draws.release_time)
+        )
+        true = held.flight.score["launch"]["true_time"]
+        start, end = held.edges[phase]
+        for row in held.flight.air_data.to_numpy().tolist():
+            estimate = estimator.step(*row)
+            if estimate is not None and start <= row[0] - true < end:
+                errors.append((row[0], estimate[1], held.flight))
+    return _rms(np.array([speed - float(true_airspeed(flight, np.array([t]))[0]) for t, speed, flight in errors]))
+
+
+def _part(held: Held, phase: str) -> Array:
+    start, end = held.edges[phase]
+    return held.rows[(held.rows[:, 0] >= start) & (held.rows[:, 0] < end)]
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

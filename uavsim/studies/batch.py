@@ -23,11 +23,14 @@ from numpy.typing import NDArray
 from uavsim.cosim import draw, fly
 from uavsim.flight import Flight
 from uavsim.scenario import Scenario
+from uavsim.score import HIDDEN
+from uavsim.studies.airspeed_flights import Course, course
 
 if TYPE_CHECKING:
     import pandas as pd
 
 ERROR_STEP = 0.1  # s, bin of the common time axis of errors
+COURSES = 60  # flights whose courses are kept; the information of the bound is averaged over them
 ERROR_START = -1.0  # s after the true launch at which it begins
 
 Progress = Callable[[int, int], None]
@@ -40,11 +43,24 @@ Finished = Callable[[int, Result], None]
 
 @dataclass(frozen=True, slots=True)
 class ErrorTrace:
-    """Airspeed error of one flight against time since the true launch, binned rms, m/s."""
+    """Airspeed error of one flight against time since the true launch.
+
+    Attributes
+    ----------
+    seed : int
+    filtered, raw : ndarray
+        Binned rms, m/s.
+    nees : ndarray
+        (Error over claimed standard deviation)² of the last row of each bin; NaN without one, and below V*.
+    course : Course or None
+        Of the first `COURSES` flights with the aided estimator: what its bound is computed from.
+    """
 
     seed: int
     filtered: NDArray[np.float64]
     raw: NDArray[np.float64]
+    nees: NDArray[np.float64]
+    course: Course | None = None
 
 
 @dataclass(frozen=True)
@@ -134,7 +150,7 @@ def fly_seeds(
 
 def _in_turn(scenario: Scenario, seeds: list[int], finished: Finished) -> None:
     for position, seed in enumerate(seeds):
-        finished(position, _one(scenario, seed, keep=position == 0))
+        finished(position, _one(scenario, seed, position=position))
 
 
 def _together(scenario: Scenario, seeds: list[int], finished: Finished, workers: int) -> None:
@@ -142,7 +158,7 @@ def _together(scenario: Scenario, seeds: list[int], finished: Finished, workers:
     with ProcessPoolExecutor(min(workers, len(seeds)), mp_context=get_context("spawn")) as pool:
         with _interrupts_ignored():
             waiting: dict[Future[Result], int] = {
-                pool.submit(_one, scenario, seed, keep=position == 0): position for position, seed in enumerate(seeds)
+                pool.submit(_one, scenario, seed, position=position): position for position, seed in enumerate(seeds)
             }
         try:
             for future in as_completed(waiting):
@@ -169,7 +185,7 @@ def _interrupts_ignored() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _one(scenario: Scenario, seed: int, *, keep: bool) -> Result:
+def _one(scenario: Scenario, seed: int, *, position: int) -> Result:
     """Fly one seed; the whole flight comes back only if somebody will look at it."""
     own = scenario.with_seed(seed)
     flight = fly(own)
@@ -184,7 +200,7 @@ def _one(scenario: Scenario, seed: int, *, keep: bool) -> Result:
         "requirements.met": all(r["met"] for r in flight.score["requirements"]),
     }
     unexpected = flight.score["outcome"] != flight.score["expected"]
-    return row, _trace(flight), flight if keep or unexpected else None
+    return row, _trace(flight, with_course=position < COURSES), flight if position == 0 or unexpected else None
 
 
 def _flat(value: dict[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -197,17 +213,38 @@ def _flat(value: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _trace(flight: Flight) -> ErrorTrace:
+def _trace(flight: Flight, *, with_course: bool) -> ErrorTrace:
     true_time = flight.score["launch"]["true_time"]
     if true_time is None:
         empty = np.empty(0)
-        return ErrorTrace(flight.score["seed"], empty, empty)
+        return ErrorTrace(flight.score["seed"], empty, empty, empty)
     estimate, truth = flight.estimate, flight.truth
     time = estimate["t"].to_numpy(float)
     airspeed = np.interp(time, truth["t"].to_numpy(), truth["airspeed"].to_numpy())
     bins = np.floor((time - true_time - ERROR_START) / ERROR_STEP).astype(int)
-    rms = [_binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")]
-    return ErrorTrace(flight.score["seed"], *rms)
+    filtered, raw = (
+        _binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")
+    )
+    bounded = flight.scenario["estimator"]["kind"] == "aided" and flight.score["launch"]["detected_time"] is not None
+    return ErrorTrace(
+        flight.score["seed"],
+        filtered,
+        raw,
+        nees=_last_nees(estimate["airspeed"].to_numpy(float), airspeed, estimate["airspeed_sd"].to_numpy(float), bins),
+        course=course(flight) if with_course and bounded and flight.score["airspeed"]["rmse"] is not None else None,
+    )
+
+
+def _last_nees(
+    speed: NDArray[np.float64], true: NDArray[np.float64], sd: NDArray[np.float64], bins: NDArray[np.int_]
+) -> NDArray[np.float64]:
+    """NEES of the last row of each bin; rows below V* say nothing."""
+    found = np.full(int(bins.max(initial=-1)) + 1, np.nan)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        nees = np.where((sd > 0.0) & (speed >= HIDDEN * sd), ((speed - true) / sd) ** 2, np.nan)
+    use = bins >= 0
+    found[bins[use]] = nees[use]  # of several the last one stays
+    return found
 
 
 def _binned_rms(error: NDArray[np.float64], bins: NDArray[np.int_]) -> NDArray[np.float64]:

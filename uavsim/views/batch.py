@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.consistency import mean_band
 from uavsim.flight import claim, unfinished, write_json
-from uavsim.studies.batch import ERROR_STEP, Batch
+from uavsim.studies.airspeed_flights import bound, together
+from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch
 from uavsim.studies.quantiles import ecdf_band, quantile_band
 from uavsim.views.figure import (
     BLACK,
@@ -45,6 +47,7 @@ Array = NDArray[np.float64]
 PACKAGES = ("uavsim", "jsbsim", "numpy", "scipy", "filterpy", "pandas", "pyarrow")
 FEATURES = ("avx", "fma", "sse4", "asimd", "sve")  # of the processor, that floating point may depend on
 QUANTILES = (0.05, 0.50, 0.95)
+FEWEST = 2  # flights, from which on something is averaged
 ENLARGED = 2.0  # s after the true launch to which the error is enlarged
 DRAWN = 8  # flights with plots of their own; `uavsim replay` draws any other
 GOLDEN = 0.6180339887498949  # spreads points evenly without a random draw
@@ -128,11 +131,16 @@ def save_batch_plots(flown: Batch, folder: Path) -> list[Path]:
     Returns
     -------
     list of Path
-        Those of `latency.png`, `airspeed_error.png` and `outcomes.png` for which there are data.
+        Those of `latency.png`, `airspeed_error.png`, `consistency.png` and `outcomes.png` for which there are data.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    for name, draw in (("latency", _latency), ("airspeed_error", _airspeed_error), ("outcomes", _outcomes)):
+    for name, draw in (
+        ("latency", _latency),
+        ("airspeed_error", _airspeed_error),
+        ("consistency", _consistency),
+        ("outcomes", _outcomes),
+    ):
         figure = draw(flown)
         if figure is not None:
             written.append(save_figure(figure, folder / f"{name}.png"))
@@ -280,6 +288,71 @@ def _error_axes(speed: "Axes", share: "Axes", *errors: Array) -> None:
         axes.axvline(0.0, color=GREY, linewidth=0.9, linestyle="--")
 
 
+# -- consistency and bound -------------------------------------------------------------------------------------------
+
+
+def _consistency(flown: Batch) -> "Figure | None":
+    """NEES averaged over the flights against its band, and the RMSE over the flights against the bound."""
+    time = flown.error_time
+    nees = _matrix(flown, "nees", time.size)
+    counts = np.isfinite(nees).sum(axis=0)
+    there = (counts >= FEWEST) & (time > ERROR_START + ERROR_STEP)
+    if not there.any():
+        return None
+    least = _bound(flown)
+    columns = (1.5, 1.0) if time[-1] > 2.0 * ENLARGED else (1.0,)
+    figure, axes = sheet(
+        _title(flown), _consistency_words(nees[:, there], least), (1.2, 1.0), columns, size=(11.5, 6.5)
+    )
+    filtered = np.sqrt(
+        np.nanmean(np.where(there, _matrix(flown, "filtered", time.size), np.nan)[:, there] ** 2, axis=0)
+    )
+    bands = np.array([mean_band(int(count)) for count in counts[there]]).T
+    for i, (upper, lower) in enumerate(zip(*axes, strict=True)):
+        words = "95 % of such means"
+        upper.fill_between(time[there], *bands, color=GREY, alpha=0.35, linewidth=0.0, label=words)
+        upper.plot(time[there], np.nanmean(nees[:, there], axis=0), color=BLUE, linewidth=1.3, label="mean NEES")
+        upper.axhline(1.0, color=GREY, linewidth=0.8)
+        upper.set_yscale("log")
+        upper.yaxis.set_major_formatter("{x:g}")
+        lower.plot(time[there], filtered, color=BLUE, linewidth=1.3, label="RMSE over the flights")
+        if least is not None:
+            lower.plot(*least, color=RED, linewidth=1.1, linestyle="--", label="bound, √PCRB")
+        lower.set_yscale("log")
+        lower.yaxis.set_major_formatter("{x:g}")
+        lower.set_xlabel("time since true launch, s", fontsize=SMALL + 1.0)
+        upper.set_xlim(time[there][0], ENLARGED if i else time[there][-1])
+    label(axes[0][0], "NEES")
+    label(axes[1][0], "airspeed error, m/s")
+    for row in axes:
+        legend(row[-1], row[0])
+    make_room(figure, 0)
+    return figure
+
+
+def _consistency_words(nees: Array, least: "tuple[Array, Array] | None") -> str:
+    means = np.nanmean(nees, axis=0)
+    bands = np.array([mean_band(int(count)) for count in np.isfinite(nees).sum(axis=0)]).T
+    inside = np.mean((means >= bands[0]) & (means <= bands[1]))
+    words = (
+        f"(error/sd claimed)² over the flights: mean {means.mean():.2f}, in its band at {100 * inside:.0f} % of times"
+    )
+    return words + ("" if least is None else "; below: against the least that the readings allow")
+
+
+def _bound(flown: Batch) -> "tuple[Array, Array] | None":
+    """Times and least standard deviation, if there are enough courses and a flight whose schedule can be taken."""
+    courses = [trace.course for trace in flown.traces if trace.course is not None]
+    flight = next(iter(flown.kept.values()), None)
+    if len(courses) < FEWEST or flight is None or flight.score["launch"]["detected_time"] is None:
+        return None
+    t, sd = bound(flight, together(courses))
+    bins = np.floor((t - ERROR_START) / ERROR_STEP).astype(int)
+    middles = ERROR_START + ERROR_STEP * (np.arange(bins[0], bins[-1] + 1) + 0.5)
+    means = np.sqrt(np.bincount(bins - bins[0], sd**2) / np.maximum(np.bincount(bins - bins[0]), 1))
+    return middles, means
+
+
 # -- outcomes --------------------------------------------------------------------------------------------------------
 
 
@@ -328,9 +401,9 @@ def _strips(axes: "Axes", flown: Batch, key: str) -> None:
             axes.plot((i - 0.3, i + 0.3), (band.value, band.value), color=BLACK, linewidth=1.6)
             if band.low is not None and band.high is not None:
                 axes.plot((i, i), (band.low, band.high), color=BLACK, linewidth=1.6)
-        for bound in bounds.get(column, ()):
-            if bound is not None:
-                axes.plot((i - 0.4, i + 0.4), (bound, bound), color=RED, linewidth=1.2, linestyle="--")
+        for limit in bounds.get(column, ()):
+            if limit is not None:
+                axes.plot((i - 0.4, i + 0.4), (limit, limit), color=RED, linewidth=1.2, linestyle="--")
     axes.set_xticks(range(1 + len(PHASES)), ["all", *PHASES])
     axes.set_xlim(-0.6, len(PHASES) + 0.6)
     dress(axes)
