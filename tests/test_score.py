@@ -596,3 +596,39 @@ def test_without_an_airspeed_there_is_no_figure_of_it() -> None:
 )
 def test_the_launch_is_along_the_detectors_axis_of_a_rig(kind: Any, axes: Any, axis: str) -> None:
     assert launch_axis(kind, axes) == axis
+
+
+# -- consistency -----------------------------------------------------------------------------------------------------
+
+
+def test_coverage_at_1_2_and_3_sigma_and_nees_above_v_star() -> None:
+    """Errors of 0.5, 1.5, 2.5 and 3.5 claimed deviations in turn; where V < 2 sd an error says nothing of the claim."""
+    flight = made()
+    t = flight.estimate("t")
+    error = np.resize([0.5, 1.5, 2.5, 3.5], t.shape)
+    estimate = estimated(t, flight.tables["truth"], error=error)
+    cruise = score(made(estimate=estimate))["airspeed"]["cruise"]
+    for sigmas, share in ((1, 0.25), (2, 0.5), (3, 0.75)):
+        assert cruise[f"coverage_{sigmas}_sigma"] == pytest.approx(share, abs=0.01)
+    assert cruise["nees_mean"] == pytest.approx((0.25 + 2.25 + 6.25 + 12.25) / 4.0, rel=0.01)
+    hidden = estimated(t, flight.tables["truth"], error=error, sd=20.0)  # 32 m/s < 2·20
+    found = score(made(estimate=hidden))["airspeed"]["cruise"]
+    assert found["nees_mean"] is None
+    assert found["coverage_95"] == 1.0
+
+
+def test_nis_is_the_mean_over_both_pressures_and_white_innovations_pass() -> None:
+    """1000 squares of Gaussian numbers are white, a slow sine's are not; NaN is no innovation."""
+    flight = made()
+    t = flight.estimate("t")
+    generator = np.random.default_rng(5)
+    estimate = estimated(t, flight.tables["truth"])
+    estimate["nis_total"] = generator.standard_normal(t.size) ** 2
+    estimate["nis_static"] = np.where(np.arange(t.size) % 2, 3.0, np.nan)
+    cruise = score(made(estimate=estimate))["airspeed"]["cruise"]
+    rows = t >= OUT + 2.0
+    both = np.concatenate([estimate["nis_total"][rows], estimate["nis_static"][rows]])
+    assert cruise["nis_mean"] == pytest.approx(np.nanmean(both), rel=0.01)
+    assert cruise["whiteness"] > 0.01
+    estimate["nis_total"] = 1.0 + np.sin(3.0 * t)
+    assert score(made(estimate=estimate))["airspeed"]["cruise"]["whiteness"] < 1e-6

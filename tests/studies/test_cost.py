@@ -67,3 +67,19 @@ def test_a_flight_that_ends_early_is_not_measured() -> None:
     crashing = load_scenario("weak-launch", overrides=["duration=10"])
     with pytest.raises(ValueError, match=r"weak-launch: the flight crashed at .* nothing to compare"):
         measure(crashing, progress=lambda _: None)
+
+
+def test_the_onboard_cost_is_of_a_flight_at_1_khz(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Detector and estimator see the launch and all readings; a percentile of single steps is above half the mean."""
+    flown: list[bool] = []
+    run = cost._run
+
+    def watched(*given: object) -> float:
+        flown.append(True)
+        return run(*given)
+
+    monkeypatch.setattr(cost, "_run", watched)
+    found = cost.measure_onboard(SHORT)
+    assert len(flown) == 2 * cost.REPEATS
+    assert found.steps == pytest.approx(6300, rel=0.05)  # the part's own clock
+    assert 0.0 < 0.5 * found.mean < found.p99

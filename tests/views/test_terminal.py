@@ -13,7 +13,7 @@ import pytest
 from uavsim.flight import Flight
 from uavsim.scenario import Scenario
 from uavsim.studies.batch import Batch
-from uavsim.studies.cost import Cost
+from uavsim.studies.cost import Cost, OnboardCost
 from uavsim.studies.quantiles import quantile_band
 from uavsim.views import terminal
 
@@ -196,7 +196,8 @@ def test_figures_that_no_flight_has_are_left_out(capsys: pytest.CaptureFixture[s
 
 
 def test_the_last_line_of_a_cost_is_its_ratio(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.print_cost(Cost(15.0, 10.0, 5.0, ratio=1.504, ratio_over_bare=3.0, steps=7, same_state=True))
+    cost = Cost(15.0, 10.0, 5.0, ratio=1.504, ratio_over_bare=3.0, steps=7, same_state=True)
+    terminal.print_cost(cost, OnboardCost(mean=1.234, p99=9.87, steps=7))
     assert capsys.readouterr().out.splitlines()[-1] == "ratio 1.50"
 
 

@@ -12,14 +12,17 @@ def bench(
 ) -> None:
     """Measure what a step in the loop costs, over bare JSBSim.
 
-    That is over the same JSBSim stepped from Python with the same truth recorded. The last line is `ratio X.XX`.
+    That is over the same JSBSim stepped from Python with the same truth recorded. The last line is `ratio X.XX`. Beside
+    it: what detector and airspeed estimator cost by themselves, which is what would run on the aircraft.
 
     Example: uavsim bench
     """
     from uavsim.scenario import load_scenario
-    from uavsim.studies.cost import measure
+    from uavsim.studies.cost import measure, measure_onboard
     from uavsim.views import terminal
 
     with user_input(), Bar("measuring") as bar:
-        cost = measure(load_scenario(scenario), progress=bar.show)
-    terminal.print_cost(cost)
+        loaded = load_scenario(scenario)
+        cost = measure(loaded, progress=bar.show)
+        onboard = measure_onboard(loaded)
+    terminal.print_cost(cost, onboard)

@@ -8,20 +8,28 @@ Three flights of the same aircraft and launch, JSBSim's own outputs off, advance
 
 Machines are noisy, so the ratio is the median over pairs of neighbouring chunks, not a quotient of totals. The
 reference must end in the same state bit for bit, or it was not the same flight.
+
+Of that, what would run on the aircraft: detector and airspeed estimator over a flight's own readings at 1 kHz and
+100 Hz, from the rail to cruise, both all the way. The mean is that of the whole run, timed once; the percentile is over
+single steps, each with the clock's own cost in it.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median
 from time import perf_counter
 
-from uavsim.cosim import Cosimulation, draw, plant_settings
+from uavsim.beliefs import believed_air, believed_noise
+from uavsim.cosim import Cosimulation, Draws, draw, plant_settings, tare_window
+from uavsim.onboard import airspeed, launch
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.plants.plant import Commands
 from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import Scenario
 
 CHUNK = 500  # plant steps
+PART, RATE = "icm-42688-p", 1000.0  # an accelerometer that has this output rate, Hz
+REPEATS = 5  # runs of the same readings, of which the fastest counts: the others were disturbed
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +43,67 @@ class Cost:
     ratio_over_bare: float
     steps: int
     same_state: bool
+
+
+@dataclass(frozen=True, slots=True)
+class OnboardCost:
+    """Cost of a step of detector and estimator together, µs: mean and 99th percentile."""
+
+    mean: float
+    p99: float
+    steps: int
+
+
+def measure_onboard(scenario: Scenario) -> OnboardCost:
+    """Run detector and estimator of a scenario over the readings of its flight with an accelerometer at 1 kHz."""
+    accelerometer = replace(scenario.accelerometer, preset=PART, rate=RATE, range_g=None, filter=None)
+    timed = Scenario.from_dict(replace(scenario, accelerometer=accelerometer).to_dict())
+    simulation = Cosimulation(timed)
+    while not simulation.ended:
+        simulation.advance(CHUNK)
+    forces, air = _rows(simulation.readings, 4), _rows(simulation.air_readings, 6)
+    whole, single = [], []
+    for _ in range(REPEATS):
+        whole.append(_run(timed, simulation.draws, forces, air, None))
+        steps: list[float] = []
+        _run(timed, simulation.draws, forces, air, steps)
+        single.append(sorted(steps)[int(0.99 * len(steps))])
+    return OnboardCost(mean=1e6 * min(whole) / len(forces), p99=1e6 * min(single), steps=len(forces))
+
+
+def _rows(flat: list[float], width: int) -> list[tuple[float, ...]]:
+    return list(zip(*(flat[i::width] for i in range(width)), strict=True))
+
+
+def _run(
+    scenario: Scenario,
+    draws: Draws,
+    forces: list[tuple[float, ...]],
+    air: list[tuple[float, ...]],
+    steps: list[float] | None,
+) -> float:
+    """Time a run, s; into `steps`, if it is a list, go the single steps."""
+    detector = launch.build(scenario.detector, RATE)
+    estimator = airspeed.build(
+        believed_air(scenario),
+        believed_noise(scenario, draws.calibration),
+        tare_window(scenario, draws.release_time),
+    )
+    feel, detect, step = estimator.accelerometer, detector.step, estimator.step
+    rows = iter([*air, (float("inf"),) * 6])
+    row = next(rows)
+    begun = perf_counter()
+    for force in forces:
+        start = perf_counter() if steps is not None else 0.0
+        feel(*force)
+        if detect(*force):
+            estimator.launched(force[0])
+        if row[0] <= force[0]:
+            step(*row)
+            row = next(rows)
+        if steps is not None:
+            steps.append(perf_counter() - start)
+    return perf_counter() - begun
 
 
 class _TapedPlant(JsbsimPlant):

@@ -19,7 +19,7 @@ from uavsim.views.notes import notes
 if TYPE_CHECKING:
     from uavsim.flight import Flight
     from uavsim.studies.batch import Batch
-    from uavsim.studies.cost import Cost
+    from uavsim.studies.cost import Cost, OnboardCost
     from uavsim.studies.quantiles import QuantileBand
 
 NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
@@ -218,7 +218,7 @@ def _with_band(quantile: "QuantileBand", digits: int) -> str:
 # -- cost ------------------------------------------------------------------------------------------------------------
 
 
-def print_cost(cost: "Cost") -> None:
+def print_cost(cost: "Cost", onboard: "OnboardCost") -> None:
     """Print what a step costs; the last line is the ratio that outside checks read."""
     for line in (
         f"steps                      {cost.steps}",
@@ -226,6 +226,7 @@ def print_cost(cost: "Cost") -> None:
         f"JSBSim, truth recorded     {cost.reference:.2f} µs a step",
         f"JSBSim, nothing recorded   {cost.bare:.2f} µs a step",
         f"in the loop over bare      {cost.ratio_over_bare:.2f}",
+        f"detector and estimator     {onboard.mean:.2f} µs a step, one in ten with pressures; p99 {onboard.p99:.1f}",
         f"same final state           {'yes, bit for bit' if cost.same_state else 'NO'}",
         f"ratio {cost.ratio:.2f}",
     ):

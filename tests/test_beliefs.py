@@ -1,0 +1,96 @@
+"""What the estimator believes: the descriptions' own numbers, through [mismatch]; figures by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sensors import AirDataHead, Streams
+from uavsim.beliefs import believed_air, believed_noise, calibrated, turbulence
+from uavsim.cosim import draw
+from uavsim.scenario import Scenario, load_scenario
+
+
+def scenario(*overrides: str) -> Scenario:
+    return load_scenario("catapult", overrides=overrides)
+
+
+def test_windows_and_lags_are_those_of_the_parts() -> None:
+    """BMP390 x2: 6.84 ms; its filter of weight 1/2 is one sample of 100 Hz late; ADXL at rate/2: one pole."""
+    noise = believed_noise(scenario("air_data.total.mode=x2/x1", "air_data.total.iir=2"))
+    assert noise.total_window == pytest.approx(6.84e-3)
+    assert noise.total_lag == pytest.approx(0.01, rel=0.01)
+    assert noise.static_lag == 0.0
+    assert noise.accelerometer_rate == 833.0
+    assert noise.accelerometer_lag == pytest.approx(1.0 / (2.0 * math.pi * 416.5))
+
+
+def test_a_tube_is_late_and_holds_a_column_of_air() -> None:
+    """ρ L = 1.225·0.05 Pa/(m/s²) on the total pressure, whose tube runs aft; the static one's runs down."""
+    noise = believed_noise(scenario("air_data.pipe=0.05"))
+    assert noise.acceleration == pytest.approx(1.225 * 0.05, rel=1e-3)
+    assert noise.acceleration_sd == pytest.approx(0.05 * 1.225 * 0.05, rel=1e-3)
+    assert 0.0 < noise.total_lag < 1e-4
+    assert believed_noise(scenario()).acceleration == 0.0
+
+
+def test_vibration_and_drift_are_noise_of_their_density() -> None:
+    """0.05 g over 195 Hz at 833 Hz; BMP390: 2·0.6²/100 s and 0.005² Pa²/s of each of two."""
+    noise = believed_noise(scenario())
+    vibration = 0.05 * 9.80665 * math.sqrt(0.5 * 833.0 / 195.0)
+    assert noise.accelerometer_sd == pytest.approx(math.hypot(vibration, 0.04403), rel=1e-3)
+    assert noise.walk == pytest.approx(math.sqrt(2.0 * (0.0072 + 2.5e-5)), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("key", "field"),
+    [
+        ("drift", "walk"), ("lag", "total_window"), ("acceleration", "acceleration"),
+        ("acceleration_sd", "acceleration_sd"), ("accelerometer_noise", "accelerometer_sd"),
+        ("accelerometer_scale", "accelerometer_scale_sd"), ("accelerometer_lag", "accelerometer_lag"),
+    ],
+)  # fmt: skip
+def test_each_mismatch_is_a_factor_on_its_own_belief(key: str, field: str) -> None:
+    plain = believed_noise(scenario("air_data.pipe=0.05"))
+    doubted = believed_noise(scenario("air_data.pipe=0.05", f"mismatch.{key}=2"))
+    assert getattr(doubted, field) == pytest.approx(2.0 * getattr(plain, field))
+    changed = {name for name in plain.__slots__ if getattr(doubted, name) != getattr(plain, name)}
+    together = {"lag": {"total_window", "static_window", "total_lag", "static_lag"}}
+    assert changed == together.get(key, {field})
+
+
+def test_a_calibration_is_of_the_units_that_fly_with_its_error() -> None:
+    """200 flights: what is found less what the unit has is 0.3·0.2 Pa/(m/s²) (χ², 1e-4: within 20 %)."""
+    plain = scenario("air_data.acceleration_sensitivity=true")
+    errors = []
+    for seed in range(200):
+        flown = plain.with_seed(seed)
+        head = AirDataHead(flown.air_data, Streams(seed, 0))
+        errors.append(draw(flown).calibration[0] - head.total.acceleration[0])
+        assert draw(flown).calibration[1] == 0.0  # its membrane lies across
+    assert np.std(errors) == pytest.approx(0.06, rel=0.2)
+    noise = believed_noise(plain, draw(plain).calibration)
+    assert noise.acceleration == pytest.approx(draw(plain).calibration[0])
+    assert noise.acceleration_sd == pytest.approx(0.06)
+    assert believed_noise(scenario(), (0.5, 0.0)).acceleration == 0.0  # membranes that feel nothing
+    assert calibrated(plain, Streams(1, 0)) == calibrated(plain, Streams(1, 0))
+
+
+def test_turbulence_is_that_of_the_specification() -> None:
+    """MIL-F-8785C at 200 ft and 15 m/s at 20 ft: σ_u = 1.5/0.3416^0.4, L_u = 200/0.3416^1.2 ft."""
+    sd, length = turbulence(15.0, 200.0 * 0.3048)
+    assert sd == pytest.approx(1.5 / 0.3416**0.4, rel=1e-9)
+    assert length == pytest.approx(200.0 / 0.3416**1.2 * 0.3048, rel=1e-9)
+    assert turbulence(15.0, 0.0) == turbulence(15.0, 3.048)
+
+
+def test_declared_turbulence_is_believed_and_none_changes_nothing() -> None:
+    calm = scenario()
+    assert believed_air(calm) is calm.estimator
+    gusty = scenario("environment.turbulence_wind_20ft=7.5", "flight_computer.height=60")
+    found = believed_air(gusty).aided
+    assert (found.gust_sd, found.gust_length) == turbulence(7.5, 60.0)
+    assert found.gust_height == 60.0
+    assert (
+        believed_air(scenario("environment.turbulence_wind_20ft=7.5", "mismatch.gust=0")).aided == calm.estimator.aided
+    )
