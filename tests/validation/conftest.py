@@ -49,6 +49,12 @@ def catapult_50() -> Batch:
 
 
 @pytest.fixture(scope="session")
+def catapult_paper_50() -> Batch:
+    """With the published estimator."""
+    return flown("catapult", 50, "estimator.kind=paper")
+
+
+@pytest.fixture(scope="session")
 def gusty_20() -> Batch:
     return flown("gusty", 20)
 

@@ -45,9 +45,9 @@ def test_catapult_launches(catapult_50: Batch, figure: Figure) -> None:
     figure("descent below the rail's end", sink, "m", 0, 0)
 
 
-def test_catapult_filter_is_better_than_raw(catapult_50: Batch, figure: Figure) -> None:
+def test_the_published_filter_is_better_than_raw(catapult_paper_50: Batch, figure: Figure) -> None:
     """In every flight at least 25 % in cruise and 10 % over the whole flight; the stroke is what it is."""
-    runs = catapult_50.runs
+    runs = catapult_paper_50.runs
     figure("reduction in cruise", runs["airspeed.cruise.reduction_percent"], "%", 25)
     figure("reduction over the whole flight", runs["airspeed.reduction_percent"], "%", 10)
     figure("reduction in the transition", runs["airspeed.transition.reduction_percent"], "%")
@@ -58,10 +58,26 @@ def test_catapult_filter_is_better_than_raw(catapult_50: Batch, figure: Figure) 
     figure("rmse of static pressure", runs["pressure.static.rmse"], "Pa")
 
 
-def test_catapult_claims_what_it_keeps(catapult_50: Batch, figure: Figure) -> None:
-    runs = catapult_50.runs
+def test_the_published_filter_claims_what_it_keeps(catapult_paper_50: Batch, figure: Figure) -> None:
+    runs = catapult_paper_50.runs
     figure("within 1.96 standard deviations in cruise", runs["airspeed.cruise.coverage_95"], "", 0.93, 0.99)
     figure("NEES in cruise", runs["airspeed.cruise.nees_mean"])
+    figure("valid in cruise", runs["airspeed.cruise.valid_fraction"], "", 1, 1)
+
+
+def test_catapult_estimates_its_airspeed(catapult_50: Batch, figure: Figure) -> None:
+    """The aided filter: in every flight half of the raw error is gone, in the stroke, too, and the claim covers it.
+
+    One flight's coverage wanders: its thermometer is off by a constant. In still air the claim, which is for gusts of
+    0.2 m/s, is modest.
+    """
+    runs = catapult_50.runs
+    for phase, least in (("stroke", 50), ("transition", 50), ("cruise", 60)):
+        figure(f"reduction, {phase}", runs[f"airspeed.{phase}.reduction_percent"], "%", least)
+        figure(f"rmse, {phase}", runs[f"airspeed.{phase}.rmse"], "m/s")
+        figure(f"NEES, {phase}", runs[f"airspeed.{phase}.nees_mean"])
+    figure("within 1.96 standard deviations in cruise", runs["airspeed.cruise.coverage_95"], "", 0.85)
+    figure("NIS in cruise", runs["airspeed.cruise.nis_mean"], "", 0.9, 1.1)
     figure("valid in cruise", runs["airspeed.cruise.valid_fraction"], "", 1, 1)
 
 

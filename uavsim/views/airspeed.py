@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from uavsim.plants.rig_settings import AIRCRAFT
+from uavsim.studies.airspeed_flights import bound, course, together
 from uavsim.views import curves
 from uavsim.views.figure import BLACK, BLUE, PHASES, RED, label, legend, sheet, tint
 from uavsim.views.marks import flag_all
@@ -24,11 +26,12 @@ def draw(record: Record) -> "Figure | None":
     rows = (1.2, 1.0) if record.has("truth") else (1.0,)
     figure, axes = sheet(record.title, _words(record), rows, (1.0,) * len(stretches))
     columns = list(zip(*axes, strict=True))
+    least = _bound(record)
     for column, stretch in zip(columns, stretches, strict=True):
         column[0].set_xlim(*stretch)
         _speeds(column[0], record, stretch)
         if record.has("truth"):
-            _errors(column[1], record, stretch)
+            _errors(column[1], record, stretch, least)
         tint(column, record.phases)
         label(column[-1], x="time, s")
     for row, name in zip(axes, ("airspeed, m/s", "error, m/s"), strict=False):
@@ -75,12 +78,27 @@ def _not_valid(axes: "Axes", t: Array, valid: Array) -> None:
     )
 
 
-def _errors(axes: "Axes", record: Record, stretch: Stretch) -> None:
+def _bound(record: Record) -> tuple[Array, Array] | None:
+    """Times and least standard deviation on this flight's own course, where the aided estimator flew; else None."""
+    if not (record.has("truth") and record.plant == AIRCRAFT and record.settings("estimator")["kind"] == "aided"):
+        return None
+    if record.scored("launch", "true_time") is None or record.scored("launch", "detected_time") is None:
+        return None
+    t, sd = bound(record.flight, together([course(record.flight)]))
+    return t + record.scored("launch", "true_time"), sd
+
+
+def _errors(axes: "Axes", record: Record, stretch: Stretch, least: tuple[Array, Array] | None) -> None:
     t, speed, sd, raw = record.within(stretch, "estimate", "airspeed", "airspeed_sd", "airspeed_raw")
     true = np.interp(t, record.column("truth", "t"), record.column("truth", "airspeed"))
     axes.fill_between(t, -2.0 * sd, 2.0 * sd, color=BLUE, alpha=0.22, linewidth=0.0, label="± 2 sd")
     curves.dots(axes, t, raw - true, "raw − true")
     _line(axes, t, speed - true, "estimate − true")
+    if least is not None:
+        when, sd = least
+        shown = (when >= stretch[0]) & (when <= stretch[1])
+        for sign, name in ((2.0, "± 2 √PCRB: the least that is possible"), (-2.0, None)):
+            axes.plot(when[shown], sign * sd[shown], color=RED, linewidth=0.9, linestyle="--", label=name)
     axes.axhline(0.0, color=BLACK, linewidth=0.8)
     if stretch == record.span:
         curves.fit(axes, [(t, speed - true), (t, raw - true)], record.free, "m/s")
