@@ -82,7 +82,8 @@ def _bound(record: Record) -> tuple[Array, Array] | None:
     """Times and least standard deviation on this flight's own course, where the aided estimator flew; else None."""
     if not (record.has("truth") and record.plant == AIRCRAFT and record.settings("estimator")["kind"] == "aided"):
         return None
-    if record.scored("launch", "true_time") is None or record.scored("launch", "detected_time") is None:
+    needed = (("launch", "true_time"), ("launch", "detected_time"), ("flight", "rail_exit_time"), ("airspeed", "rmse"))
+    if any(record.scored(*keys) is None for keys in needed) or not (record.column("truth", "p_static") > 0.0).all():
         return None
     t, sd = bound(record.flight, together([course(record.flight)]))
     return t + record.scored("launch", "true_time"), sd
@@ -97,7 +98,7 @@ def _errors(axes: "Axes", record: Record, stretch: Stretch, least: tuple[Array, 
     if least is not None:
         when, sd = least
         shown = (when >= stretch[0]) & (when <= stretch[1])
-        for sign, name in ((2.0, "± 2 √PCRB: the least that is possible"), (-2.0, None)):
+        for sign, name in ((2.0, "± 2 √PCRB, the bound"), (-2.0, None)):
             axes.plot(when[shown], sign * sd[shown], color=RED, linewidth=0.9, linestyle="--", label=name)
     axes.axhline(0.0, color=BLACK, linewidth=0.8)
     if stretch == record.span:
