@@ -83,7 +83,9 @@ def _bound(record: Record) -> tuple[Array, Array] | None:
     if not (record.has("truth") and record.plant == AIRCRAFT and record.settings("estimator")["kind"] == "aided"):
         return None
     needed = (("launch", "true_time"), ("launch", "detected_time"), ("flight", "rail_exit_time"), ("airspeed", "rmse"))
-    if any(record.scored(*keys) is None for keys in needed) or not (record.column("truth", "p_static") > 0.0).all():
+    if any(record.scored(*keys) is None for keys in needed):
+        return None
+    if not all((record.column("truth", name) > 0.0).all() for name in ("p_static", "temperature")):
         return None
     t, sd = bound(record.flight, together([course(record.flight)]))
     return t + record.scored("launch", "true_time"), sd
