@@ -50,7 +50,7 @@ def test_two_workers_give_what_one_gives(alone: Batch) -> None:
 def test_rows_are_in_the_order_of_the_seeds_however_they_finish(alone: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     def mixed(scenario: Scenario, seeds: list[int], finished: batch.Finished) -> None:
         for position in (2, 0, 1):
-            finished(position, batch._one(scenario, seeds[position], keep=position == 0))
+            finished(position, batch._one(scenario, seeds[position], position=position))
 
     monkeypatch.setattr(batch, "_in_turn", mixed)
     same(fly_seeds(SHORT, SEEDS, workers=1), alone)
@@ -121,10 +121,10 @@ def test_few_seeds_need_no_pool(seeds: list[int], monkeypatch: pytest.MonkeyPatc
 def test_an_interrupt_keeps_what_was_finished(alone: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     one = batch._one
 
-    def interrupted(scenario: object, seed: int, *, keep: bool) -> object:
+    def interrupted(scenario: object, seed: int, *, position: int) -> object:
         if seed == 9:
             raise KeyboardInterrupt
-        return one(scenario, seed, keep=keep)
+        return one(scenario, seed, position=position)
 
     monkeypatch.setattr(batch, "_one", interrupted)
     flown = fly_seeds(SHORT, SEEDS, workers=1)
@@ -168,3 +168,29 @@ def test_an_error_in_a_flight_is_the_callers() -> None:
     unknown = load_scenario("catapult", overrides=["aircraft.properties.no/such-property=1", "duration=6"])
     with pytest.raises(ValueError, match="no/such-property"):
         fly_seeds(unknown, [1, 2], workers=2)
+
+
+# -- consistency -----------------------------------------------------------------------------------------------------
+
+
+def test_nees_is_that_of_the_last_row_of_a_bin_and_none_below_v_star(alone: Batch) -> None:
+    """Against a plain loop over one flight's rows, at every bin."""
+    flight, trace = alone.kept[4], alone.traces[0]
+    true = flight.score["launch"]["true_time"]
+    e, truth = flight.estimate, flight.truth
+    error = (e["airspeed"] - np.interp(e["t"], truth["t"], truth["airspeed"])).to_numpy()
+    speed, sd = e["airspeed"].to_numpy(), e["airspeed_sd"].to_numpy()
+    bins = np.floor((e["t"].to_numpy() - true - ERROR_START) / ERROR_STEP).astype(int)
+    for bin_ in range(trace.nees.size):
+        rows = np.flatnonzero(bins == bin_)
+        if rows.size and speed[rows[-1]] >= 2.0 * sd[rows[-1]]:
+            assert trace.nees[bin_] == pytest.approx((error[rows[-1]] / sd[rows[-1]]) ** 2)
+        else:
+            assert np.isnan(trace.nees[bin_])
+    assert np.isfinite(trace.nees[-5:]).all()
+
+
+def test_courses_are_kept_for_the_bound_and_only_of_the_aided_estimator(alone: Batch) -> None:
+    assert all(trace.course is not None for trace in alone.traces)
+    paper = load_scenario("catapult", overrides=["duration=6", "estimator.kind=paper"])
+    assert fly_seeds(paper, [3], workers=1).traces[0].course is None

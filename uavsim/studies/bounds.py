@@ -56,7 +56,7 @@ class Information:
         inverse = np.linalg.inv(noise)
         mean = transition.mean(axis=0)
         d12 = -mean.T @ inverse
-        d11 = np.einsum("mji,jk,mkl->il", transition, inverse, transition, optimize=True) / len(transition)
+        d11 = (transition.transpose(0, 2, 1) @ inverse @ transition).mean(axis=0)
         j = inverse - d12.T @ np.linalg.solve(self.matrix + d11, d12)
         self.matrix = 0.5 * (j + j.T)
 
@@ -102,7 +102,7 @@ class Courses:
 
     def at(self, column: Array, t: float) -> Array:
         """Interpolate one of them to a time; shape (m,)."""
-        i = int(np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, self.t.size - 2))
+        i = min(max(int(np.searchsorted(self.t, t, side="right")) - 1, 0), self.t.size - 2)
         share = (t - self.t[i]) / (self.t[i + 1] - self.t[i])
         found: Array = column[:, i] + share * (column[:, i + 1] - column[:, i])
         return found
