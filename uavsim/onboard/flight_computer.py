@@ -186,6 +186,7 @@ class FlightComputer:
         self.commands: Commands = (0.0, 0.0, radians(settings.launch_pitch_deg), 0.0, 0.0)
         self.events: list[dict[str, Any]] = []
         self._feel = estimator.accelerometer if estimator.aided else None
+        self._news: list[tuple[float, str, str, str]] = getattr(estimator, "news", [])
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
@@ -228,11 +229,19 @@ class FlightComputer:
         estimate = self.estimator.step(t, p_total, p_static, temperature, t_total, t_static)
         if estimate is None:
             return None
+        if self._news:
+            self._report()
         if self._reference_pressure is None and isfinite(estimate[5]):
             self._reference_pressure = estimate[5]
         if self.state == "flying":
             self._hold(estimate, temperature)
         return estimate
+
+    def _report(self) -> None:
+        """Note what the estimator has found of its sensors: what was flagged and what was taken back."""
+        for t, event, channel, kind in self._news:
+            self._note(t, event, channel=channel, **({"kind": kind} if kind else {}))
+        self._news.clear()
 
     # -- launch ------------------------------------------------------------------------------------------------------
 
@@ -374,5 +383,5 @@ class FlightComputer:
             now[4] if engaged is None else engaged,
         )
 
-    def _note(self, t: float, event: str, **details: float) -> None:
+    def _note(self, t: float, event: str, **details: float | str) -> None:
         self.events.append({"t": t, "event": event, **details})

@@ -31,11 +31,11 @@ from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
-from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
+from uavsim.onboard.airspeed.watch import TotalWatch
 
 ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
 TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
@@ -43,7 +43,7 @@ VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
 PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
 WATCH = 2.0  # s after the recognition, from which the total port is watched
-FOLLOWED, UNSEEN = 1.0, 0.3  # s and m/s: how long the gust has been missed, and what else, when a port is flagged
+COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
 MODEL = 0.1  # Pa, what the model of a pressure is off by, whatever its sensor: 0.1 ms of the stroke's rise
@@ -77,18 +77,20 @@ class AidedFilter:
         It; of no meaning before.
     time : float
         The instant that it stands at, s.
-    port : PortMonitor
-        Of the total pressure's port: flagged, it is not taken, and the airspeed coasts and is not valid.
+    watch : TotalWatch
+        Over the total pressure's port: flagged, it is not taken, and the airspeed coasts, valid while it is well known.
+    news : list of tuple
+        What was flagged and taken back: time, s, event, channel and kind; the flight computer takes them out.
     """
 
     aided = True
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
         "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_held",
-        "_held_count", "_measured", "_misses", "_noise", "_on_rail", "_patience", "_raw_scale", "_rest", "_rows",
-        "_same", "_scale_variance", "_settings", "_settled", "_static_age", "_static_variance", "_t", "_t_static",
+        "_held_count", "_measured", "_misses", "_noise", "_off", "_on_rail", "_patience", "_raw_scale", "_rest",
+        "_rows", "_same", "_scale_variance", "_settings", "_settled", "_static_age", "_static_variance", "_t", "_t_static",
         "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age", "_total_variance",
-        "_turning", "_u", "_w", "_waiting", "_watch_from", "_wind", "energy", "flying", "port", "time",
+        "_turning", "_u", "_w", "_waiting", "_watch_from", "_wind", "energy", "flying", "news", "time", "watch",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -116,7 +118,9 @@ class AidedFilter:
         self._temperature = self._density = self._gas = self._heat = nan
         self._tare = 0.0
         self._settled, self._patience, self._misses = False, inf, 0
-        self.port, self._watch_from = PortMonitor(aided.bias_sd), inf
+        self.watch, self._watch_from = TotalWatch(aided, self._total_variance, noise.walk), inf
+        self._off = 0.0
+        self.news: list[tuple[float, str, str, str]] = []
         self._u = self._w = 0.0
         self.energy = self._begin(-inf)
 
@@ -149,7 +153,8 @@ class AidedFilter:
         self._u, self._w = self._gained.at(start)
         self._held, self._held_count = 0.0, 1
         self._settled, self._patience = False, t + PATIENCE
-        self.port, self._watch_from = PortMonitor(self._settings.aided.bias_sd), t + WATCH
+        self.watch = TotalWatch(self._settings.aided, self._total_variance, self._noise.walk)
+        self._watch_from, self._off = t + WATCH, 0.0
         self._t_total = self._t_static = -inf
         for row in self._rows:
             if row[4] - self._total_age > start or row[5] - self._static_age > start:
@@ -270,7 +275,7 @@ class AidedFilter:
         begin, end, rate = self._folded
         if to > begin and self.time < end:
             variance += rate * (min(to, end) - max(self.time, begin))
-        energy.predict(dt, gained, variance, self._density, force > self._on_rail)
+        energy.predict(dt, gained - self._off * dt, variance, self._density, force > self._on_rail)
         self.time, self._u, self._w = to, u, w
 
     def _take_static(self, reading: float, at: float) -> float:
@@ -301,7 +306,7 @@ class AidedFilter:
             slope = self._density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * self._gust * abs(energy.v) * behind
-        port, tared = self.port, reading - self._tare - noise.acceleration * pushed
+        port, tared = self.watch.port, reading - self._tare - noise.acceleration * pushed
         if port.faulty:
             self._coast(end, reading, tared, variance)
             return nan
@@ -309,8 +314,11 @@ class AidedFilter:
         if not energy.taken and self.time < self._watch_from:  # so early it is rather the filter that is wrong
             slope = self._density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.vv += (energy.innovation / slope) ** 2
-        if self.time > self._watch_from and port.add(end, reading, energy.innovation, nis, variance, energy.b):
-            energy.astray(self._gust * abs(energy.v) * FOLLOWED + UNSEEN * UNSEEN, self._settings.aided.bias_sd)
+        if self.time > self._watch_from:
+            kind = self.watch.take(energy, self.time, self._u, tared, nis, self._density, self._gust)
+            if kind:
+                self._off = self.watch.go_back(energy, self._density, self._gust)
+                self.news.append((self._t, "airspeed_fault", "total", kind))
         return nis
 
     def _coast(self, end: float, reading: float, tared: float, variance: float) -> None:
@@ -320,8 +328,11 @@ class AidedFilter:
         speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
         slope = self._density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
-        if self.port.coast(end, reading, difference, energy.vv + 2.0 * variance / (slope * slope)):
+        spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
+        if self.watch.port.coast(end, reading, tared, difference, spread):
             energy.vv += difference * difference
+            energy.b, self._off = energy.b + self._off, 0.0
+            self.news.append((self._t, "airspeed_recovered", "total", ""))
 
     def _settle(self, reading: float) -> bool:
         """Whether the push has brought V far enough from 0 for a total pressure; if it never does, take V from that."""
@@ -372,7 +383,7 @@ class AidedFilter:
         u, w = self._gained.at(t)
         gained = u - self._u
         drift = energy.b + energy.s
-        speed = energy.v + gained - dt * drift
+        speed = energy.v + gained - dt * (drift + self._off)
         variance = energy.vv + dt * (dt * (energy.bb + 2.0 * energy.bs + energy.ss) - 2.0 * (energy.vb + energy.vs))
         variance += self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
         begin, end, rate = self._folded
@@ -385,5 +396,5 @@ class AidedFilter:
         sd = sqrt(max(variance, 0.0) + share * share)
         y = 1.0 + speed * speed / self._heat
         total = static * y * y * y * sqrt(y)
-        valid = speed >= VALID * sd and self._measured and not self.port.faulty
+        valid = speed >= VALID * sd and self._measured and (sd < COASTED or not self.watch.port.faulty)
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static

@@ -1,0 +1,112 @@
+"""Whether a total pressure stands still although it should move: two models of the same readings, compared.
+
+HEALTHY. Energy rate (`energy`) without the climb: V V̇ = V (f_x − b) + ṗ/ρ, so that the total pressure p_t = p + ρV²/2
+obeys
+
+    ṗ_t = 2 ṗ + ρ V (f_x − b) + ρ V · gust
+
+A filter of two states, P of p_t and the bias b, predicts each reading by the filter's own static pressure p and the
+integral of f_x. Its b wanders far less than that of the aided filter, which has to follow launches and pulls: a port
+that freezes in a climb is to have no acceleration that is not there to hide behind.
+
+FROZEN. The pressure in the tube is a constant; the reading is that and noise. The constant is the healthy model's P,
+with its variance, at the last instant at which the healthy model was the better one.
+
+    W = max(0, W + ln N(z; frozen) − ln N(z; healthy))
+
+is Page's (1954) sum for a change from the second to the first. It grows for two reasons: the healthy model expects
+motion, by climb or acceleration, that does not come; and it expects gusts, so that its variance S is greater than the
+reading's R: ½ ln(S/R) − ½ (1 − R/S) a reading. The second needs gusts that are there. Air for which none are declared
+may be still, so the filter's floor does not count as evidence: there STILL takes its place.
+"""
+
+from math import log
+
+BIAS_SD, BIAS_RATE = 0.5, 0.025  # m/s², (m/s²)/√s: the part's bias; angle of attack in flight, measured in the model
+STILL = 0.05  # m/s, turbulence that is expected at the least where none is declared
+LEAST, MOST = -4.0, 2.0  # nats, what one reading may say for the frozen port
+DOUBT = 0.02  # nats a reading that still air takes off
+SURPRISE = 9.0  # NIS, from which on a healthy model that is ahead doubts its pressure
+
+
+class FrozenTest:
+    """The comparison, fed with every total pressure.
+
+    Parameters
+    ----------
+    variance : float
+        Of a reading's noise, Pa².
+
+    Attributes
+    ----------
+    evidence : float
+        W, nats.
+    held : float
+        The constant that the frozen model believes in, Pa.
+    pressure, bias : float
+        P less twice the static pressure, Pa, and b, m/s², of the healthy model.
+    pp, pb, bb : float
+        Their covariance.
+    """
+
+    __slots__ = ("_declared", "_noise", "bb", "bias", "evidence", "held", "held_variance", "pb", "pp", "pressure")
+
+    def __init__(self, variance: float, declared: bool) -> None:
+        self._noise, self._declared = variance, declared
+        self.evidence = self.bias = self.pb = 0.0
+        self.pressure = self.held = 0.0
+        self.pp, self.bb, self.held_variance = 1e12, BIAS_SD * BIAS_SD, 1e12
+
+    def add(
+        self, reading: float, static: float, static_variance: float, gained: float, dt: float, slope: float, gust: float
+    ) -> float:
+        """Take a reading; return the evidence.
+
+        Parameters
+        ----------
+        reading : float
+            Total pressure, Pa.
+        static, static_variance : float
+            Static pressure as it is believed at that instant, Pa, and its variance, Pa².
+        gained, dt : float
+            ∫ f_x dt since the last reading, m/s, and the time, s.
+        slope : float
+            ρ V, Pa/(m/s).
+        gust : float
+            Variance that the gust adds to the airspeed in that time, m²/s².
+        """
+        noise, bb = self._noise, self.bb
+        reach = slope * dt
+        self.pressure += slope * gained - reach * self.bias
+        pb = self.pb - reach * bb
+        pp = self.pp - reach * (self.pb + pb) + slope * slope * gust
+        bb += BIAS_RATE * BIAS_RATE * dt
+        spread = pp + noise + 4.0 * static_variance
+        innovation = reading - 2.0 * static - self.pressure
+        nis = innovation * innovation / spread
+        still, steady = reading - self.held, self.held_variance + noise
+        if self._declared:
+            said = 0.5 * (log(spread / steady) + nis - still * still / steady)
+        else:
+            said = 0.5 * (nis - still * still / spread) - DOUBT
+        if said > MOST:
+            said = MOST
+        elif said < LEAST:
+            said = LEAST
+        evidence = self.evidence + said
+        if not evidence > 0.0 and nis > SURPRISE:
+            pp, pb = pp + innovation * innovation, 0.0
+            spread += innovation * innovation
+        kp, kb = pp / spread, pb / spread
+        self.pressure += kp * innovation
+        self.bias += kb * innovation
+        self.pp, self.pb, self.bb = pp - kp * pp, pb - kp * pb, bb - kb * pb
+        if evidence > 0.0:
+            gain = self.held_variance / steady
+            self.held += gain * still
+            self.held_variance = gain * noise
+            self.evidence = evidence
+        else:
+            self.held, self.held_variance = self.pressure + 2.0 * static, self.pp
+            self.evidence = 0.0
+        return self.evidence
