@@ -15,8 +15,8 @@ measured in flight.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from math import copysign, sqrt
+from dataclasses import dataclass, field, replace
+from math import copysign, nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +79,13 @@ class MatchedSettings:
     runs: int = 100
     seed: int = 1
     acceleration_sd: float = 0.06
+
+    def believed(self) -> EstimatorSettings:
+        """Return what the filter believes: b wanders as the model has it, and its turbulence is there."""
+        aided = self.estimator.aided
+        rate = aided.bias_sd * sqrt(2.0 / aided.bias_time)
+        sd = max(aided.gust_sd, aided.gust_floor)
+        return replace(self.estimator, aided=replace(aided, bias_rate=rate, gust_sd=sd, gust_floor=0.9 * sd))
 
     def noise(self) -> NoiseModel:
         """Return what the filter believes of the sensors."""
@@ -259,7 +266,7 @@ def run(
     drawn = draw(settings) if drawn is None else drawn
     rows = []
     for i in range(settings.runs):
-        rows.append(fly_one(settings, drawn, i, kind(settings.estimator, settings.noise(), COVERED)))
+        rows.append(fly_one(settings, drawn, i, kind(settings.believed(), settings.noise(), COVERED)))
         if told is not None:
             told((i + 1) / settings.runs)
     table = np.array(rows)  # (m, r, 6)
@@ -297,7 +304,7 @@ def fly_one(settings: MatchedSettings, drawn: Drawn, i: int, estimator: AidedFil
     launch = REST + LATENCY
     for told, total, static, total_end, static_end in rows:
         while t <= told:
-            estimator.accelerometer(t, f, 0.0, 0.0)
+            estimator.accelerometer(t, f, nan, nan)
             if t >= launch and not estimator.flying:
                 estimator.launched(t)
             t, f = next(forces, (np.inf, 0.0))

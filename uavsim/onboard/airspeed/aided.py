@@ -31,11 +31,12 @@ from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
+from uavsim.onboard.airspeed.readmission import longest_row
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
-from uavsim.onboard.airspeed.watch import TotalWatch
+from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
 
 ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
 TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
@@ -77,8 +78,8 @@ class AidedFilter:
         It; of no meaning before.
     time : float
         The instant that it stands at, s.
-    watch : TotalWatch
-        Over the total pressure's port: flagged, it is not taken, and the airspeed coasts, valid while it is well known.
+    watch, static_watch : TotalWatch, StaticWatch
+        Over the two ports: one that is flagged is not taken; the airspeed is valid while it is well known all the same.
     news : list of tuple
         What was flagged and taken back: time, s, event, channel and kind; the flight computer takes them out.
     """
@@ -87,10 +88,11 @@ class AidedFilter:
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
         "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_held",
-        "_held_count", "_measured", "_misses", "_noise", "_off", "_on_rail", "_patience", "_raw_scale", "_rest",
-        "_rows", "_same", "_scale_variance", "_settings", "_settled", "_static_age", "_static_variance", "_t", "_t_static",
-        "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age", "_total_variance",
-        "_turning", "_u", "_w", "_waiting", "_watch_from", "_wind", "energy", "flying", "news", "time", "watch",
+        "_held_count", "_lag", "_lifted", "_lifts", "_measured", "_misses", "_noise", "_on_rail", "_patience",
+        "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings", "_settled", "_static_age",
+        "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share",
+        "_total_age", "_total_variance", "_turning", "_u", "_w", "_waiting", "_watch_from", "_wind", "energy",
+        "flying", "news", "static_watch", "time", "watch",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -98,6 +100,7 @@ class AidedFilter:
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate)
+        self._lag = noise.accelerometer_lag
         self._rest = RestForce(noise.accelerometer_sd)
         self._rows: deque[Row] = deque(maxlen=ROWS)
         self._total_age = 0.5 * noise.total_window + noise.total_lag
@@ -118,8 +121,9 @@ class AidedFilter:
         self._temperature = self._density = self._gas = self._heat = nan
         self._tare = 0.0
         self._settled, self._patience, self._misses = False, inf, 0
-        self.watch, self._watch_from = TotalWatch(aided, self._total_variance, noise.walk), inf
-        self._off = 0.0
+        self._watch_from = inf
+        self._lifted, self._lifts = 0.0, 0
+        self._begin_watch()
         self.news: list[tuple[float, str, str, str]] = []
         self._u = self._w = 0.0
         self.energy = self._begin(-inf)
@@ -128,7 +132,9 @@ class AidedFilter:
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force; see `Estimator`."""
-        self._gained.add(t - self._noise.accelerometer_lag, fx)
+        self._gained.add(t - self._lag, fx)
+        self._lifted += fz
+        self._lifts += 1
         if not self.flying:
             self._rest.add(t, fx)
 
@@ -153,13 +159,20 @@ class AidedFilter:
         self._u, self._w = self._gained.at(start)
         self._held, self._held_count = 0.0, 1
         self._settled, self._patience = False, t + PATIENCE
-        self.watch = TotalWatch(self._settings.aided, self._total_variance, self._noise.walk)
-        self._watch_from, self._off = t + WATCH, 0.0
+        self._watch_from = t + WATCH
+        self._begin_watch()
         self._t_total = self._t_static = -inf
         for row in self._rows:
             if row[4] - self._total_age > start or row[5] - self._static_age > start:
                 self._fly(*row)
         self._rows.clear()
+
+    def _begin_watch(self) -> None:
+        """Look at how the sensors repeat themselves on the rail, and begin to watch their ports."""
+        usual = [longest_row(row[i] for row in self._rows) for i in (1, 2)]
+        walk = self._noise.walk
+        self.watch = TotalWatch(self._settings.aided, self._total_variance, walk, usual[0])
+        self.static_watch = StaticWatch(self._static_variance, walk, usual[1])
 
     def unfolding(self, t: float) -> None:
         """For a while trust the integral of f_x less."""
@@ -275,7 +288,10 @@ class AidedFilter:
         begin, end, rate = self._folded
         if to > begin and self.time < end:
             variance += rate * (min(to, end) - max(self.time, begin))
-        energy.predict(dt, gained - self._off * dt, variance, self._density, force > self._on_rail)
+        if self.watch.faulty:
+            self.watch.carry(energy, dt, gained, variance, self._density)
+        else:
+            energy.predict(dt, gained, variance, self._density, force > self._on_rail)
         self.time, self._u, self._w = to, u, w
 
     def _take_static(self, reading: float, at: float) -> float:
@@ -283,13 +299,31 @@ class AidedFilter:
         ahead = self.time - at
         if not (0.0 < reading < inf and -OLDEST < ahead < OLDEST):
             return nan
+        if self.static_watch.faulty:
+            difference = reading - energy.p - self._density * energy.v * ahead * energy.s
+            spread = energy.pp + self._static_variance
+            if self.static_watch.coast(at, reading, difference, spread):
+                energy.pp += difference * difference
+                self.news.append((self._t, "airspeed_recovered", "static", ""))
+            return nan
         nis = energy.static(reading, self._static_variance, self._density * energy.v * ahead)
         self._misses = 0 if energy.taken else self._misses + 1
-        if self._misses >= PERSISTENT:  # no spike: the port itself is in other air
+        if self.time > self._watch_from:
+            lift, self._lifted, self._lifts = -self._lifted / self._lifts if self._lifts else nan, 0.0, 0
+            kind = self.static_watch.take(at, reading, lift, self._density)
+            if kind or self._misses >= PERSISTENT:
+                self._flag_static(kind or "jump")
+        elif self._misses >= PERSISTENT:  # no spike, and too early for a fault: it is rather the filter that is wrong
             energy.pp += energy.innovation * energy.innovation
             energy.static(reading, self._static_variance, 0.0)
             self._misses = 0
         return nis
+
+    def _flag_static(self, kind: str) -> None:
+        self.static_watch.flag(kind, self.energy, self._density, self.watch.port.frozen.bias)
+        self._misses = 0
+        self.watch.port.restart()
+        self.news.append((self._t, "airspeed_fault", "static", kind))
 
     def _take_total(self, reading: float, end: float) -> float:
         energy = self.energy
@@ -306,20 +340,27 @@ class AidedFilter:
             slope = self._density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * self._gust * abs(energy.v) * behind
-        port, tared = self.watch.port, reading - self._tare - noise.acceleration * pushed
-        if port.faulty:
+        watch, tared = self.watch, reading - self._tare - noise.acceleration * pushed
+        if watch.faulty:
             self._coast(end, reading, tared, variance)
             return nan
         nis = energy.total(tared, variance, pushed, self._heat)
         if not energy.taken and self.time < self._watch_from:  # so early it is rather the filter that is wrong
             slope = self._density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.vv += (energy.innovation / slope) ** 2
-        if self.time > self._watch_from:
-            kind = self.watch.take(energy, self.time, self._u, tared, nis, self._density, self._gust)
+        if self.time > self._watch_from and not self.static_watch.faulty:
+            kind = watch.take(energy, self.time, self._u, tared, nis, self._density, self._gust)
             if kind:
-                self._off = self.watch.go_back(energy, self._density, self._gust)
-                self.news.append((self._t, "airspeed_fault", "total", kind))
+                self._flag_total(kind)
         return nis
+
+    def _flag_total(self, kind: str) -> None:
+        """Blame the port for what its readings show, or the other: without it the total pressure does not fit."""
+        if kind in ("unfit", "drift") and self.static_watch.suspect:
+            self._flag_static("frozen")
+        elif kind != "unfit":
+            self.watch.flag(kind, self.energy, self._density, self._gust)
+            self.news.append((self._t, "airspeed_fault", "total", kind))
 
     def _coast(self, end: float, reading: float, tared: float, variance: float) -> None:
         """Compare a flagged port with the coasting filter; take it back when they have agreed for long enough."""
@@ -329,9 +370,8 @@ class AidedFilter:
         slope = self._density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
-        if self.watch.port.coast(end, reading, tared, difference, spread):
+        if self.watch.coast(reading, tared, difference, spread, end):
             energy.vv += difference * difference
-            energy.b, self._off = energy.b + self._off, 0.0
             self.news.append((self._t, "airspeed_recovered", "total", ""))
 
     def _settle(self, reading: float) -> bool:
@@ -383,7 +423,7 @@ class AidedFilter:
         u, w = self._gained.at(t)
         gained = u - self._u
         drift = energy.b + energy.s
-        speed = energy.v + gained - dt * (drift + self._off)
+        speed = energy.v + gained - dt * drift
         variance = energy.vv + dt * (dt * (energy.bb + 2.0 * energy.bs + energy.ss) - 2.0 * (energy.vb + energy.vs))
         variance += self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
         begin, end, rate = self._folded
@@ -396,5 +436,9 @@ class AidedFilter:
         sd = sqrt(max(variance, 0.0) + share * share)
         y = 1.0 + speed * speed / self._heat
         total = static * y * y * y * sqrt(y)
-        valid = speed >= VALID * sd and self._measured and (sd < COASTED or not self.watch.port.faulty)
+        valid = (
+            speed >= VALID * sd
+            and self._measured
+            and (sd < COASTED or not (self.watch.faulty or self.static_watch.faulty))
+        )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static

@@ -22,8 +22,8 @@ may be still, so the filter's floor does not count as evidence: there STILL take
 
 from math import log
 
-BIAS_SD, BIAS_RATE = 0.5, 0.025  # m/s², (m/s²)/√s: the part's bias; angle of attack in flight, measured in the model
-STILL = 0.05  # m/s, turbulence that is expected at the least where none is declared
+BIAS_SD = 0.5  # m/s², the part's bias and the angle of attack
+STILL = 0.08  # m/s, turbulence that is expected at the least where none is declared
 LEAST, MOST = -4.0, 2.0  # nats, what one reading may say for the frozen port
 DOUBT = 0.02  # nats a reading that still air takes off
 SURPRISE = 9.0  # NIS, from which on a healthy model that is ahead doubts its pressure
@@ -36,6 +36,10 @@ class FrozenTest:
     ----------
     variance : float
         Of a reading's noise, Pa².
+    bias_rate : float
+        How fast b wanders in steady flight, (m/s²)/√s.
+    declared : bool
+        Whether turbulence is declared, so that stillness is evidence.
 
     Attributes
     ----------
@@ -43,17 +47,23 @@ class FrozenTest:
         W, nats.
     held : float
         The constant that the frozen model believes in, Pa.
+    misfit, count : float, int
+        Σ (e²/σ² − 1) of the frozen model since it began, and of how many readings: 0 ± √(2n) if it is true.
     pressure, bias : float
         P less twice the static pressure, Pa, and b, m/s², of the healthy model.
     pp, pb, bb : float
         Their covariance.
     """
 
-    __slots__ = ("_declared", "_noise", "bb", "bias", "evidence", "held", "held_variance", "pb", "pp", "pressure")
+    __slots__ = (
+        "_bias_density", "_declared", "_noise", "bb", "bias", "count", "evidence", "held", "held_variance", "misfit",
+        "pb", "pp", "pressure",
+    )  # fmt: skip
 
-    def __init__(self, variance: float, declared: bool) -> None:
-        self._noise, self._declared = variance, declared
-        self.evidence = self.bias = self.pb = 0.0
+    def __init__(self, variance: float, bias_rate: float, declared: bool) -> None:
+        self._noise, self._declared, self._bias_density = variance, declared, bias_rate**2
+        self.evidence = self.bias = self.pb = self.misfit = 0.0
+        self.count = 0
         self.pressure = self.held = 0.0
         self.pp, self.bb, self.held_variance = 1e12, BIAS_SD * BIAS_SD, 1e12
 
@@ -80,7 +90,7 @@ class FrozenTest:
         self.pressure += slope * gained - reach * self.bias
         pb = self.pb - reach * bb
         pp = self.pp - reach * (self.pb + pb) + slope * slope * gust
-        bb += BIAS_RATE * BIAS_RATE * dt
+        bb += self._bias_density * dt
         spread = pp + noise + 4.0 * static_variance
         innovation = reading - 2.0 * static - self.pressure
         nis = innovation * innovation / spread
@@ -106,7 +116,10 @@ class FrozenTest:
             self.held += gain * still
             self.held_variance = gain * noise
             self.evidence = evidence
+            self.misfit += still * still / steady - 1.0
+            self.count += 1
         else:
             self.held, self.held_variance = self.pressure + 2.0 * static, self.pp
-            self.evidence = 0.0
+            self.evidence = self.misfit = 0.0
+            self.count = 0
         return self.evidence

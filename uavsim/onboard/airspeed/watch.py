@@ -1,23 +1,38 @@
-"""The watch over the total pressure: the tests' bookkeeping, and the way back to where the port was last believed.
+"""The watch over both ports: the tests' bookkeeping, which of the two is to blame, and the way back.
 
 A port that freezes is followed by the filter until the tests are sure, and V and b are by then what it made of them. So
-the last instant at which the live port was the better explanation is kept, with V, b and p. From there V is carried on
-by energy rate alone,
+the last instant at which the live port was the better explanation is kept, with V, b and p. If it was the total
+pressure's, V is carried on from there by energy rate alone,
 
     V = V₀ + ∫ f_x dt − b T + (p − p₀)/(ρ V₀),        σ_V² = σ₀² + (σ_b T)² + gust · T + (σ_p/ρV₀)² + u²
 
 with T the time since, b and σ_b those of the slower filter of `frozen`, and u what a port may have been off by before.
+If it was the static port, p is carried on with the climb c₀ of then, p = p_held − ρ g c₀ T, and V is corrected for it;
+the total pressure is taken on, and tells the climb by p_t and f_x.
+
+A static pressure that stands still in a climb makes the total pressure wrong, too: energy rate expects it to rise. Then
+the total pressure is no constant, and the static pressure is: that one is to blame.
 """
 
 from math import inf
 
+from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
 from uavsim.onboard.airspeed.energy import EnergyFilter
-from uavsim.onboard.airspeed.frozen import STILL, FrozenTest
+from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.monitor import PortMonitor
+from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
 
-GAP = 0.1  # s without a total pressure, after which the tests begin anew
+GAP = 0.1  # s without a pressure, after which its tests begin anew
 UNSEEN = 0.5  # m/s, what a port may have been off by before the tests began to doubt it
+SHUT, SUSPECT = 14.0, 4.0  # nats, by which the static port is flagged, and if the total pressure does not fit
+CLIMB_SD = 0.5  # m/s, of the climb by which a shut static port is left
+BIAS_SD = 0.1  # m/s², of the slow b
+
+
+def _part(energy: EnergyFilter) -> None:
+    """Forget what V and b have to do with the rest."""
+    energy.vp = energy.vs = energy.vd = energy.vk = energy.bp = energy.bs = energy.bd = energy.bk = 0.0
 
 
 class TotalWatch:
@@ -27,30 +42,36 @@ class TotalWatch:
     ----------
     aided : AidedSettings
         What is believed of the air.
-    variance : float
-        Of a reading's noise, Pa².
-    walk : float
-        Random walk of the pair's difference, Pa/√s.
+    variance, walk : float
+        Of a reading's noise, Pa², and random walk of the pair's difference, Pa/√s.
+    usual : int
+        The longest row of equal readings that the live sensor has been seen to give.
 
     Attributes
     ----------
     port : PortMonitor
+    faulty : bool
+        Whether the port is flagged.
     """
 
-    __slots__ = ("_bb", "_bias", "_bias_sd", "_declared", "_p", "_still", "_t", "_t0", "_u", "_u0", "_v", "_vv", "port")
+    __slots__ = (
+        "_bb", "_bias", "_bias_sd", "_declared", "_p", "_still", "_t", "_t0", "_u", "_u0", "_v", "_vv", "faulty",
+        "port",
+    )  # fmt: skip
 
-    def __init__(self, aided: AidedSettings, variance: float, walk: float) -> None:
+    def __init__(self, aided: AidedSettings, variance: float, walk: float, usual: int = 0) -> None:
         self._declared = aided.gust_sd > aided.gust_floor
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd = aided.bias_sd
-        self.port = PortMonitor(aided.bias_sd, variance, walk, self._declared)
+        self.port = PortMonitor(aided.bias_sd, aided.bias_rate, variance, walk, usual, self._declared)
+        self.faulty = False
         self._t = self._t0 = -inf
         self._u = self._u0 = self._v = self._vv = self._p = self._bias = self._bb = 0.0
 
     def take(
         self, energy: EnergyFilter, t: float, gained: float, reading: float, nis: float, density: float, gust: float
     ) -> str:
-        """Take a reading that the filter has taken; return what is wrong with the port, "" for nothing.
+        """Take a reading that the filter has taken; return what seems to be wrong, as `PortMonitor.add`.
 
         Parameters
         ----------
@@ -66,26 +87,133 @@ class TotalWatch:
             Of the air, kg/m³, and of its gusts, 2 σ²/L, m/s².
         """
         port, dt, v = self.port, t - self._t, energy.v
-        test = port.frozen
         if dt > GAP:
-            test = port.frozen = FrozenTest(port.variance, self._declared)
+            port.restart()
             dt, self._u, self._t0 = 0.0, gained, -inf
-        believed = gust if self._declared else self._still
-        reach = believed * v * dt
+        test = port.frozen
+        reach = (gust if self._declared else self._still) * v * dt
         if test.add(reading, energy.p, energy.pp, gained - self._u, dt, density * v, reach) == 0.0 or self._t0 == -inf:
             self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
             self._bias, self._bb = test.bias, test.bb
         self._t, self._u = t, gained
-        return port.add(t, reading, energy.innovation, nis, energy.b)
+        return port.add(reading, energy.innovation, nis, energy.b)
 
-    def go_back(self, energy: EnergyFilter, density: float, gust: float) -> float:
-        """Put the filter to where it would be without what it took since the port was last believed; return b, m/s²."""
-        since, slope = self._t - self._t0, density * self._v
+    def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
+        """Flag the port, and put the filter to where it would be without what it took since."""
+        test, since, slope = self.port.frozen, self._t - self._t0, density * self._v
+        if kind == "frozen":
+            self.port.back.flag(self._t, test.held, test.held_variance)
+        else:
+            self.port.back.flag(self._t)
+        self.faulty = True
         energy.v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
         bb = min(self._bb, self._bias_sd * self._bias_sd)
         energy.vv = self._vv + gust * self._v * since + bb * since * since + UNSEEN * UNSEEN
         energy.vv += energy.pp / (slope * slope)
-        energy.b, energy.bb = 0.0, bb
+        energy.b, energy.bb = self._bias, bb
         energy.vb = -bb * since
-        energy.vp = energy.vs = energy.vd = energy.vk = energy.bp = energy.bs = energy.bd = energy.bk = 0.0
-        return self._bias
+        self._p = energy.p
+        _part(energy)
+
+    def carry(self, energy: EnergyFilter, dt: float, gained: float, variance: float, density: float) -> None:
+        """While flagged, advance by energy rate: V takes what p gains, and p tells nothing of V and b in return.
+
+        The arguments are those of `EnergyFilter.predict`. What b has been found to be stays; its deviation from that
+        wanders as b does.
+        """
+        v, p = energy.v, energy.p
+        energy.b = 0.0
+        energy.predict(dt, gained, variance, density, False)
+        energy.v = v + gained - dt * self._bias + (p - self._p) / (density * max(v, 1.0))
+        energy.b, self._p = self._bias, p
+        _part(energy)
+
+    def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
+        """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
+        if not self.port.back.hear(t, reading, pressure, difference, spread):
+            return False
+        self.faulty = False
+        self.port.restart()
+        self._t = -inf
+        return True
+
+
+class StaticWatch:
+    """Tests of the static port.
+
+    Parameters
+    ----------
+    variance, walk : float
+        Of a reading's noise, Pa², and random walk of the sensor, Pa/√s.
+    usual : int
+        As of `TotalWatch`.
+
+    Attributes
+    ----------
+    faulty : bool
+        Whether the port is flagged.
+    """
+
+    __slots__ = ("_back", "_t", "_test", "_variance", "faulty")
+
+    def __init__(self, variance: float, walk: float, usual: int = 0) -> None:
+        self._variance = variance
+        self._back = Readmission(variance, walk, usual)
+        self._test, self._t, self.faulty = ClimbTest(variance, 0.0), -inf, False
+
+    @property
+    def suspect(self) -> bool:
+        """Whether it is to blame for a total pressure that does not fit."""
+        return self._test.evidence > SUSPECT
+
+    def take(self, t: float, reading: float, lift: float, density: float) -> str:
+        """Take a reading; return what is wrong with the port, "frozen" or "stuck"; "" for nothing.
+
+        Parameters
+        ----------
+        t : float
+            Its instant, s.
+        reading : float
+            Pa.
+        lift : float
+            Mean of −f_z since the last one, m/s²; NaN where it is not known, and the port is not tested.
+        density : float
+            Of the air, kg/m³.
+        """
+        if self._back.repeats(reading):
+            return "stuck"
+        if not -inf < lift < inf:
+            return ""
+        dt = t - self._t
+        if dt > GAP:
+            self._test, dt = ClimbTest(self._variance, reading), 0.0
+        self._t = t
+        evidence = self._test.add(reading, dt, lift, density * GRAVITY)
+        return "frozen" if evidence > SHUT else ""
+
+    def flag(self, kind: str, energy: EnergyFilter, density: float, bias: float) -> None:
+        """Flag the port; if it was shut, put the filter to where the climb of then would have led."""
+        test = self._test
+        self.faulty = True
+        if kind != "frozen":
+            self._back.flag(self._t)
+            return
+        self._back.flag(self._t, test.held, test.held_variance)
+        weight, v = density * GRAVITY, max(energy.v, 1.0)
+        off = weight * CLIMB_SD
+        p = test.held - weight * test.climb_then * test.since
+        energy.v += (energy.p - p) / (density * v)
+        energy.pp += (off * test.since) ** 2 + test.held_variance
+        energy.vv += energy.pp / (density * v) ** 2 + UNSEEN * UNSEEN
+        energy.p, energy.s, energy.ss = p, GRAVITY * test.climb_then / v, (GRAVITY * CLIMB_SD / v) ** 2
+        energy.ps = -off * test.since * GRAVITY * CLIMB_SD / v
+        energy.b, energy.bb = bias, BIAS_SD * BIAS_SD
+        energy.vb = energy.pd = energy.pk = energy.sd = energy.sk = 0.0
+        _part(energy)
+
+    def coast(self, t: float, reading: float, difference: float, spread: float) -> bool:
+        """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
+        if not self._back.hear(t, reading, reading, difference, spread):
+            return False
+        self.faulty, self._t = False, -inf
+        return True

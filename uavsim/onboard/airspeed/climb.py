@@ -1,0 +1,108 @@
+"""Whether a static pressure stands still although the aircraft climbs or sinks: two models of the same readings.
+
+HEALTHY. The climb c changes by what the accelerometer feels across the wings, wings level or nearly so,
+
+    ċ = −(f_z + g) − a + noise,        ṗ = −ρ g c
+
+with a for its bias and the attitude. It is measured by the static pressure itself, so that a port which is shut in a
+climb tells of a pull that f_z has not felt. FROZEN. The pressure in the tube is a constant. As in `frozen`,
+
+    W = max(0, W + ½ (ν²/S − e²/S) − δ)
+
+with ν and e what the two models are off by and S the healthy one's variance for both: air that is still, and a flight
+that is level, are no evidence.
+"""
+
+from uavsim.onboard.airspeed.frozen import LEAST, MOST, SURPRISE
+
+GRAVITY = 9.80665  # m/s², ISO 80000-3
+CLIMB_SD, CLIMB_RATE = 3.0, 0.2  # m/s, (m/s)/√s: climb at the start; what roll and pitch turn away from f_z
+BIAS_SD, BIAS_RATE = 0.5, 0.05  # m/s², (m/s²)/√s
+DOUBT = 0.03  # nats that a reading takes off
+
+
+class ClimbTest:
+    """The comparison, fed with every static pressure.
+
+    Parameters
+    ----------
+    variance : float
+        Of a reading's noise, Pa².
+    static : float
+        Static pressure at the start, Pa.
+
+    Attributes
+    ----------
+    evidence : float
+        W, nats.
+    held, held_variance : float
+        The constant that the frozen model believes in, Pa and Pa².
+    since, climb_then : float
+        How long ago the healthy model was last the better one, s, and the climb by it then, m/s.
+    p, c, a : float
+        State of the healthy model: Pa, m/s, m/s².
+    """
+
+    __slots__ = (
+        "_aa", "_ca", "_cc", "_noise", "_pa", "_pc", "_pp", "a", "c", "climb_then", "evidence", "held",
+        "held_variance", "p", "since",
+    )  # fmt: skip
+
+    def __init__(self, variance: float, static: float) -> None:
+        self._noise = variance
+        self.p = self.held = static
+        self.c = self.a = self.evidence = self.since = self.climb_then = 0.0
+        self._pp = self.held_variance = 1e6
+        self._cc, self._aa = CLIMB_SD * CLIMB_SD, BIAS_SD * BIAS_SD
+        self._pc = self._pa = self._ca = 0.0
+
+    def add(self, reading: float, dt: float, lift: float, weight: float) -> float:
+        """Take a reading; return the evidence.
+
+        Parameters
+        ----------
+        reading : float
+            Static pressure, Pa.
+        dt : float
+            Since the last one, s.
+        lift : float
+            −f_z, its mean over that time, m/s².
+        weight : float
+            ρ g, Pa/m.
+        """
+        r, noise = weight * dt, self._noise
+        self.c += (lift - GRAVITY - self.a) * dt
+        self.p -= r * self.c
+        # c ← c − dt a, then p ← p − r c, each on rows and columns
+        pa, ca, aa = self._pa, self._ca, self._aa
+        pc = self._pc - dt * pa
+        new_ca = ca - dt * aa
+        cc = self._cc - dt * (ca + new_ca) + CLIMB_RATE * CLIMB_RATE * dt
+        ca = new_ca
+        new_pc = pc - r * cc
+        pp = self._pp - r * (pc + new_pc) + 1e-3 * noise
+        pc, pa = new_pc, pa - r * ca
+        aa += BIAS_RATE * BIAS_RATE * dt
+        spread = pp + noise
+        innovation, still = reading - self.p, reading - self.held
+        nis = innovation * innovation / spread
+        said = 0.5 * (nis - still * still / spread) - DOUBT
+        evidence = self.evidence + (MOST if said > MOST else LEAST if said < LEAST else said)
+        if not evidence > 0.0 and nis > SURPRISE:
+            pp, pc, pa = pp + innovation * innovation, 0.0, 0.0
+            spread += innovation * innovation
+        kp, kc, ka = pp / spread, pc / spread, pa / spread
+        self.p += kp * innovation
+        self.c += kc * innovation
+        self.a += ka * innovation
+        self._pp, self._pc, self._pa = pp - kp * pp, pc - kp * pc, pa - kp * pa
+        self._cc, self._ca, self._aa = cc - kc * pc, ca - kc * pa, aa - ka * pa
+        if evidence > 0.0:
+            gain = self.held_variance / (self.held_variance + noise)
+            self.held += gain * still
+            self.held_variance = gain * noise
+            self.evidence, self.since = evidence, self.since + dt
+        else:
+            self.held, self.held_variance, self.evidence = self.p, self._pp, 0.0
+            self.since, self.climb_then = 0.0, self.c
+        return self.evidence
