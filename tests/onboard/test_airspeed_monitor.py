@@ -135,7 +135,7 @@ GUST = 2.0 * 1.0**2 / 200.0  # 2 σ²/L at 1 m/s, m/s²
 def evidence(*, gust, climb=0.0, shut=None, readings=3000, seed=5, bias=0.2):
     """W of a total pressure in gusts and a climb, m/s, at each reading; shut in from reading `shut` on."""
     generator = np.random.default_rng(seed)
-    test = FrozenTest(NOISE**2, 0.025, gust > 0.0)
+    test = FrozenTest(NOISE**2, 0.005, gust > 0.0)
     spread = gust * 32.0 * DT
     speed = np.cumsum(np.sqrt(spread) * generator.standard_normal(readings))
     static = -12.0 * climb * DT * np.arange(readings)
@@ -152,21 +152,21 @@ def evidence(*, gust, climb=0.0, shut=None, readings=3000, seed=5, bias=0.2):
 
 @pytest.mark.parametrize(("gust", "climb"), [(0.0, 0.0), (0.0, 2.0), (GUST, 0.0), (GUST, -2.0)])
 def test_live_ports_give_no_evidence(gust, climb):
-    """20 records of 30 s each: below the level."""
-    highest = max(evidence(gust=gust, climb=climb, seed=seed).max() for seed in range(20))
+    """6 records of 30 s each: below the level."""
+    highest = max(evidence(gust=gust, climb=climb, seed=seed).max() for seed in range(6))
     assert highest < (FROZEN if gust else CALM_LEVEL)
 
 
 @pytest.mark.parametrize(("gust", "climb"), [(0.0, 2.0), (0.0, -2.0), (GUST, 0.0), (GUST, 2.0)])
 def test_shut_ports_do(gust, climb):
-    """20 records each: above the level within 2 s, in gusts of 1 m/s or a climb of 2 m/s; 2.7 Pa at 100 Hz.
+    """10 records each: above the level within 2 s, in gusts of 1 m/s or a climb of 2 m/s; 2.7 Pa at 100 Hz.
 
-    In gusts alone 19 of 20 (2.7 Pa is the noise at which the sum's mean just reaches the level: ½ ln(S/R) − ½(1 − R/S)
+    In gusts alone half of them (2.7 Pa is the noise at which the sum's mean just reaches the level: ½ ln(S/R) − ½(1 − R/S)
     = 0.12 a reading).
     """
     level = FROZEN if gust else CALM_LEVEL
-    found = [(evidence(gust=gust, climb=climb, shut=2000, seed=seed)[2000:2200] > level).any() for seed in range(20)]
-    assert sum(found) >= (10 if gust and not climb else 19 if gust else 20)
+    found = [(evidence(gust=gust, climb=climb, shut=2000, seed=seed)[2000:2200] > level).any() for seed in range(10)]
+    assert sum(found) >= (5 if gust and not climb else 9 if gust else 10)
 
 
 def test_a_shut_port_in_level_still_air_cannot_be_seen():
@@ -197,7 +197,7 @@ def test_a_static_port_is_known_by_the_pull_that_was_not_felt(climb):
 
 def test_white_innovations_raise_nothing():
     """20 000 readings of white ν of variance 1: nothing wrong."""
-    monitor = PortMonitor(0.3, 0.025, 25.0, 0.01, 0, True)
+    monitor = PortMonitor(0.3, 0.005, 25.0, 0.01, 0, True)
     for nu in np.random.default_rng(4).standard_normal(20_000).tolist():
         assert monitor.add(1e5 + nu, 5.0 * nu, nu * nu, 0.0) == ""
 
@@ -205,9 +205,9 @@ def test_white_innovations_raise_nothing():
 def test_what_is_wrong_is_named():
     """One side, the other, a bias that cannot be, and a number that repeats."""
     for innovation, bias in ((5.0, 0.0), (-5.0, 0.0), (0.0, 2.0)):
-        monitor = PortMonitor(0.3, 0.025, 25.0, 0.01, 0, True)
+        monitor = PortMonitor(0.3, 0.005, 25.0, 0.01, 0, True)
         assert any(monitor.add(float(k), innovation, innovation**2, bias) == "drift" for k in range(100))
-    monitor = PortMonitor(0.3, 0.025, 25.0, 0.01, 0, True)
+    monitor = PortMonitor(0.3, 0.005, 25.0, 0.01, 0, True)
     assert [monitor.add(1e5, 0.0, 1.0, 0.0) for _ in range(SAME + 1)][-1] == "stuck"
 
 

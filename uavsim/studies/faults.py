@@ -1,4 +1,4 @@
-"""Ports and sensors that fail in flight: how soon the estimator flags them, what it makes of it, and how often for none.
+"""Ports and sensors that fail in flight: how soon it is flagged, what is made of it, and how often for nothing.
 
 Each case is a packaged scenario, its overrides and a fault whose beginning is drawn from the flight's seed, so that
 (case, seed) fixes every bit. A flight tells
@@ -17,6 +17,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from math import inf, nan
 from multiprocessing import get_context
+from typing import Any
 
 import numpy as np
 
@@ -165,7 +166,7 @@ def _judge(case: Case, seed: int, fault: float, flown: Cosimulation) -> FaultFli
     flags = [e for e in flight.events if e["event"] == "airspeed_fault"]
     effect = fault - case.late  # a flag while the ice grows is none before the fault
     after = [e for e in flags if e["t"] >= effect]
-    first = after[0] if after else {"t": nan, "channel": "", "kind": ""}
+    first: dict[str, Any] = after[0] if after else {"t": nan, "channel": "", "kind": ""}
     back = [e["t"] for e in flight.events if e["event"] == "airspeed_recovered" and e["t"] >= first["t"]]
     t, speed, sd, valid = (flight.estimate[c].to_numpy() for c in ("t", "airspeed", "airspeed_sd", "valid"))
     error = speed - np.interp(t, truth["t"].to_numpy(), truth["airspeed"].to_numpy())

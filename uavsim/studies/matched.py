@@ -26,6 +26,7 @@ from uavsim.consistency import Consistency, judge
 from uavsim.onboard.airspeed import AidedFilter, EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.aided import SLOWEST
 from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
+from uavsim.onboard.airspeed.frozen import TURNED
 from uavsim.onboard.airspeed.rest_force import WANDER
 from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
 
@@ -83,7 +84,7 @@ class MatchedSettings:
     def believed(self) -> EstimatorSettings:
         """Return what the filter believes: b wanders as the model has it, and its turbulence is there."""
         aided = self.estimator.aided
-        rate = aided.bias_sd * sqrt(2.0 / aided.bias_time)
+        rate = aided.bias_sd * sqrt(2.0 / aided.bias_time) / TURNED
         sd = max(aided.gust_sd, aided.gust_floor)
         return replace(self.estimator, aided=replace(aided, bias_rate=rate, gust_sd=sd, gust_floor=0.9 * sd))
 

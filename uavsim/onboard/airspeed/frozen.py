@@ -25,7 +25,8 @@ from math import log
 BIAS_SD = 0.5  # m/s², the part's bias and the angle of attack
 STILL = 0.08  # m/s, turbulence that is expected at the least where none is declared
 LEAST, MOST = -4.0, 2.0  # nats, what one reading may say for the frozen port
-DOUBT = 0.02  # nats a reading that still air takes off
+TURNED = 5.0  # times as fast as in still air b wanders in declared turbulence, whose vertical gusts turn f_x
+DOUBT = 0.015  # nats a reading that still air takes off
 SURPRISE = 9.0  # NIS, from which on a healthy model that is ahead doubts its pressure
 
 
@@ -37,7 +38,7 @@ class FrozenTest:
     variance : float
         Of a reading's noise, Pa².
     bias_rate : float
-        How fast b wanders in steady flight, (m/s²)/√s.
+        How fast b wanders in steady flight and still air, (m/s²)/√s.
     declared : bool
         Whether turbulence is declared, so that stillness is evidence.
 
@@ -61,7 +62,8 @@ class FrozenTest:
     )  # fmt: skip
 
     def __init__(self, variance: float, bias_rate: float, declared: bool) -> None:
-        self._noise, self._declared, self._bias_density = variance, declared, bias_rate**2
+        self._noise, self._declared = variance, declared
+        self._bias_density = (TURNED * bias_rate if declared else bias_rate) ** 2
         self.evidence = self.bias = self.pb = self.misfit = 0.0
         self.count = 0
         self.pressure = self.held = 0.0

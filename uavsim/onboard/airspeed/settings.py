@@ -31,7 +31,8 @@ class AidedSettings:
     bias_time : float
         Correlation time of that in flight, s.
     bias_rate : float
-        How fast that wanders in steady flight, (m/s²)/√s: what the watch over the ports goes by.
+        How fast that wanders in steady flight and still air, (m/s²)/√s: what the watch over the ports goes by; in
+        declared turbulence five times as fast.
     static_walk : float
         What moves the static pressure beside the climb, Pa/√s.
     on_rail : float
@@ -53,7 +54,7 @@ class AidedSettings:
     slope_time: Annotated[float, Interval(gt=0.1, le=1000.0)] = 5.0
     bias_sd: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.3
     bias_time: Annotated[float, Interval(gt=0.01, le=1000.0)] = 5.0
-    bias_rate: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.025
+    bias_rate: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.005
     static_walk: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.3
     on_rail: Annotated[float, Interval(gt=0.0, le=500.0)] = 20.0
     unfolding_time: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.35

@@ -23,6 +23,9 @@ from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
 
+Kept = tuple[float, float, float, float, float, float, float]
+"""When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
+PACE, KEPT = 0.5, 4  # s between what is kept of V, and how many of them: a port that drifts is left 2 s before its flag
 GAP = 0.1  # s without a pressure, after which its tests begin anew
 UNSEEN = 0.5  # m/s, what a port may have been off by before the tests began to doubt it
 SHUT, SUSPECT = 14.0, 4.0  # nats, by which the static port is flagged, and if the total pressure does not fit
@@ -55,8 +58,8 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_bb", "_bias", "_bias_sd", "_declared", "_p", "_still", "_t", "_t0", "_u", "_u0", "_v", "_vv", "faulty",
-        "port",
+        "_bb", "_before", "_bias", "_bias_sd", "_declared", "_p", "_still", "_t", "_t0", "_u", "_u0", "_v", "_vv",
+        "faulty", "port",
     )  # fmt: skip
 
     def __init__(self, aided: AidedSettings, variance: float, walk: float, usual: int = 0) -> None:
@@ -66,6 +69,7 @@ class TotalWatch:
         self.port = PortMonitor(aided.bias_sd, aided.bias_rate, variance, walk, usual, self._declared)
         self.faulty = False
         self._t = self._t0 = -inf
+        self._before: tuple[Kept, ...] = ((-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),)
         self._u = self._u0 = self._v = self._vv = self._p = self._bias = self._bb = 0.0
 
     def take(
@@ -90,8 +94,11 @@ class TotalWatch:
         if dt > GAP:
             port.restart()
             dt, self._u, self._t0 = 0.0, gained, -inf
+            self._before = ((-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),)
         test = port.frozen
         reach = (gust if self._declared else self._still) * v * dt
+        if t - self._before[-1][0] > PACE:
+            self._before = (*self._before[-KEPT:], (t, gained, v, energy.vv, energy.p, test.bias, test.bb))
         if test.add(reading, energy.p, energy.pp, gained - self._u, dt, density * v, reach) == 0.0 or self._t0 == -inf:
             self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
             self._bias, self._bb = test.bias, test.bb
@@ -100,7 +107,10 @@ class TotalWatch:
 
     def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
         """Flag the port, and put the filter to where it would be without what it took since."""
-        test, since, slope = self.port.frozen, self._t - self._t0, density * self._v
+        test = self.port.frozen
+        if kind != "frozen" and self._before[0][0] > -inf:  # it has been drifting for a while: to before that
+            self._t0, self._u0, self._v, self._vv, self._p, self._bias, self._bb = self._before[0]
+        since, slope = self._t - self._t0, density * self._v
         if kind == "frozen":
             self.port.back.flag(self._t, test.held, test.held_variance)
         else:
