@@ -78,7 +78,7 @@ class AirDataHead:
     """
 
     __slots__ = (
-        "_air", "_dt", "_lines", "_membranes", "_open", "_poll", "_settings", "_static_error", "_static_felt",
+        "_air", "_dt", "_lines", "_membranes", "_next_poll", "_open", "_settings", "_static_error", "_static_felt",
         "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt", "_total_truth",
         "covered_until", "due", "full", "static", "total",
     )  # fmt: skip
@@ -97,8 +97,8 @@ class AirDataHead:
         self.total = _sensor(settings.total, FORWARD, settings.thermal, streams, unit, f"{name}.total")
         self.static = _sensor(settings.static, DOWN, settings.thermal, streams, unit, f"{name}.static")
         self.covered_until = covered_until
-        self._poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
-        self.due = self._poll.due
+        poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
+        self.due, self._next_poll = poll.due, poll.later
 
         self._air: Callable[[float], Air] = lambda _: (nan, nan, nan)  # until somebody says
         self._dt, self._steps_per_second = dt, 1.0 / dt
@@ -152,13 +152,12 @@ class AirDataHead:
         if air is not None:
             self._air = air
         rows: list[Row] = []
-        while self.due <= until:
-            t = self.due
+        t = self.due
+        while t <= until:
             p_total, _, t_total = self.total.read(t, self._total_truth)
             p_static, temperature, t_static = self.static.read(t, self._static_truth)
             rows.append((t, p_total, p_static, temperature, t_total, t_static))
-            self._poll.tick()
-            self.due = self._poll.due
+            t = self.due = self._next_poll()
         return rows
 
     # -- the truth of a conversion -----------------------------------------------------------------------------------

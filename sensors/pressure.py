@@ -147,11 +147,12 @@ class PressureSensor:
         tuple of float
             Pressure, Pa, temperature, K, end of the conversion, s; NaN before the first.
         """
-        while self.end <= t:
-            end, error, temperature_error = self.end, self._error(), self._temperature_error()
-            self._count = count = self._count + 1
-            self.end = self._first_end + count / self._rate
-            if self._skips and self.end <= t:
+        following = self.end
+        while following <= t:
+            end, error, temperature_error = following, self._error(), self._temperature_error()
+            count = self._count = self._count + 1
+            following = self.end = self._first_end + count / self._rate
+            if following <= t and self._skips:
                 continue  # nobody will see it: the next one is finished too
             middle = end - self.half_window
             pressure, temperature = truth(middle)
@@ -161,7 +162,8 @@ class PressureSensor:
             pressure += self.offset_tc * (temperature - REFERENCE_TEMPERATURE)
             if not self._low <= pressure <= self._high:
                 pressure = clip(pressure, self._low, self._high)
-            pressure = (pressure / self._step + ROUND - ROUND) * self._step
+            step = self._step
+            pressure = (pressure / step + ROUND - ROUND) * step
             step = self._temperature_step
             temperature = ((temperature + temperature_error) / step + ROUND - ROUND) * step
             if self._filters is not None:

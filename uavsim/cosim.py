@@ -8,7 +8,7 @@ the flight computer takes it; its commands act from the plant's next step on.
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -206,16 +206,16 @@ class Cosimulation:
         plant, onboard, head = self.plant, self.onboard, self.head
         step, feel, feel_all = plant.step, self.accelerometer.step, self._feel if head.full else None
         keep, take, computer = self.readings.extend, onboard.accelerometer, onboard.computer
-        on_rail = plant.on_rail
+        on_rail, commands = plant.on_rail, computer.commands
+        air: Sequence[AirReading]
         for _ in range(min(steps, self.steps - plant.k)):
-            commands = computer.commands
             step()
             t = plant.t
             if not plant.aloft:
                 self.ended = "crashed" if plant.finite else "diverged"
                 return
             readings = feel((t, plant.force)) if feel_all is None else feel_all()
-            air = head.step(t, plant.air) if head.due <= t else []
+            air = head.step(t, plant.air) if head.due <= t else ()
             for reading in readings:
                 if air and air[0][0] < reading[0]:
                     air = self._take_air(air, reading[0])
@@ -224,7 +224,8 @@ class Cosimulation:
             if air:
                 self._take_air(air, math.inf)
             if computer.commands is not commands:
-                plant.command(computer.commands)
+                commands = computer.commands
+                plant.command(commands)
             if on_rail and not plant.on_rail:
                 on_rail = False
                 self.vibration.leave_rail(t + 1.0 / STEP_RATE)  # this step's has been felt
@@ -241,7 +242,7 @@ class Cosimulation:
         self.head.feel(plant.t, (*plant.flow(), *felt))
         return self.accelerometer.step((plant.t, felt))
 
-    def _take_air(self, rows: list[AirReading], until: float) -> list[AirReading]:
+    def _take_air(self, rows: Sequence[AirReading], until: float) -> Sequence[AirReading]:
         """Hand on the rows with a time stamp before `until`; return the rest."""
         while rows and rows[0][0] < until:
             self.air_readings.extend(rows[0])

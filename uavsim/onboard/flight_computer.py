@@ -24,6 +24,7 @@ Sees readings and time, never truth. Scalar, constant memory.
 """
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite, isnan, nan, radians
 from typing import Annotated, Any, Protocol
@@ -38,6 +39,8 @@ RAIL_BLOCK = 0.5  # s, over which the mean on the rail is taken; the block befor
 
 Estimate = tuple[float, float, float, float, float, float, bool, float, float]
 """t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid, nis_total, nis_static."""
+Feel = Callable[[float, float, float, float], None]
+"""Takes a reading of specific force, m/s^2, body axes: t, fx, fy, fz."""
 Commands = tuple[float, float, float, float, float]
 """Wing (0, 1), throttle (0 … 1), pitch, roll (rad), stabiliser engaged (0, 1)."""
 
@@ -64,8 +67,9 @@ class Estimator(Protocol):
     def aided(self) -> bool:
         """Whether it wants the readings of specific force."""
 
-    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
-        """Take one reading of specific force, m/s^2, body axes."""
+    @property
+    def accelerometer(self) -> Feel:
+        """What takes a reading of specific force; another, quicker one perhaps once a launch has been recognised."""
 
     def launched(self, t: float) -> None:
         """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
@@ -190,6 +194,8 @@ class FlightComputer:
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
+        self._level_pitch = radians(settings.level_pitch_deg)
+        self._lowest_pitch = 2.0 * self._level_pitch - radians(settings.climb_pitch_deg)
         self._block_start: float | None = None
         self._block_sum, self._block_count = 0.0, 0
         self._last_block: float | None = None
@@ -304,6 +310,7 @@ class FlightComputer:
             self._note(t, "motor_on")
             self._command(throttle=self.settings.throttle_level)
             self.state, self._last_estimate = "flying", t
+            self._feel = self.estimator.accelerometer if self.estimator.aided else None
         else:
             self._note(t, "rearmed")
             self.detector.reset()
@@ -318,9 +325,12 @@ class FlightComputer:
         A static pressure or temperature that is no number leaves the height at what it was last.
         """
         t, airspeed, _, _, _, p_static, valid, _, _ = estimate
-        dt = min(max(t - self._last_estimate, 0.0), 10 * LONGEST_STEP)
+        dt = _within(t - self._last_estimate, 0.0, 10 * LONGEST_STEP)
         self._last_estimate = t
-        self._trust(t, valid)
+        if valid == self._trusted:
+            self._changed_since = None
+        else:
+            self._doubt(t, valid)
         if isfinite(temperature):
             self._temperature = temperature
         if self._reference_pressure is None or isnan(self._temperature) or not isfinite(p_static):
@@ -330,13 +340,13 @@ class FlightComputer:
         error = self.settings.airspeed - airspeed if self._trusted else 0.0
         height = airdata.hypsometric_height(p_static, self._reference_pressure, self._temperature)
         pitch = self._pitch(error, height)
-        self._command(throttle=self._throttle(error, pitch, dt) if self._trusted else self._safe(pitch), pitch=pitch)
+        throttle = self._throttle(error, pitch, dt) if self._trusted else self._safe(pitch)
+        wing, _, _, roll, engaged = self.commands
+        self.commands = (wing, throttle, pitch, roll, engaged)
 
-    def _trust(self, t: float, valid: bool) -> None:
+    def _doubt(self, t: float, valid: bool) -> None:
         """Give up an estimate that stays invalid; take it up again when it has stayed valid."""
-        if valid == self._trusted:
-            self._changed_since = None
-        elif self._changed_since is None and self.settings.loss_time > 0.0:
+        if self._changed_since is None and self.settings.loss_time > 0.0:
             self._changed_since = t
         elif self._changed_since is None or t - self._changed_since >= self.settings.loss_time:
             self._trusted, self._changed_since = valid, None
@@ -345,24 +355,21 @@ class FlightComputer:
     def _safe(self, pitch: float) -> float:
         """Throttle, 0 … 1, that keeps flying at a pitch command, rad, whatever the airspeed is."""
         s = self.settings
-        return min(max(s.safe_throttle + s.throttle_climb * (pitch - radians(s.level_pitch_deg)), 0.0), 1.0)
+        return _within(s.safe_throttle + s.throttle_climb * (pitch - self._level_pitch), 0.0, 1.0)
 
     def _pitch(self, error: float, height: float) -> float:
         """Pitch command, rad, for an airspeed error, m/s, at a height, m."""
         s = self.settings
-        steepest = s.climb_pitch_deg + (s.launch_pitch_deg - s.climb_pitch_deg) * min(
-            max(error / s.speed_margin, 0.0), 1.0
-        )
-        level = radians(s.level_pitch_deg)
-        pitch = level + s.height_gain * (s.height - height)
-        return min(max(pitch, 2.0 * level - radians(s.climb_pitch_deg)), radians(steepest))
+        lacking = _within(error / s.speed_margin, 0.0, 1.0)
+        steepest = radians(s.climb_pitch_deg + (s.launch_pitch_deg - s.climb_pitch_deg) * lacking)
+        return _within(self._level_pitch + s.height_gain * (s.height - height), self._lowest_pitch, steepest)
 
     def _throttle(self, error: float, pitch: float, dt: float) -> float:
         """Throttle, 0 … 1, for an airspeed error, m/s, and a pitch command, rad."""
         s = self.settings
-        steady = self._throttle_integral + s.throttle_climb * (pitch - radians(s.level_pitch_deg))
+        steady = self._throttle_integral + s.throttle_climb * (pitch - self._level_pitch)
         wanted = steady + s.throttle_gain * error
-        throttle = min(max(wanted, 0.0), 1.0)
+        throttle = _within(wanted, 0.0, 1.0)
         if throttle == wanted:  # against a stop the integral would only wind up
             self._throttle_integral += s.throttle_rate * error * dt
         return throttle
@@ -385,3 +392,10 @@ class FlightComputer:
 
     def _note(self, t: float, event: str, **details: float | str) -> None:
         self.events.append({"t": t, "event": event, **details})
+
+
+def _within(value: float, low: float, high: float) -> float:
+    """Return `value` within its bounds; `high` counts where they cross."""
+    if value < low:  # noqa: PLR1730 - calls of max and min cost thrice as much
+        value = low
+    return high if value > high else value

@@ -385,8 +385,11 @@ class JsbsimPlant:
 
     def air(self, time: float) -> Vector:
         """Total pressure, static pressure, Pa, and temperature, K, at any recorded `time`, linear within a step."""
-        k = min(int(time * self.settings.step_rate), self.k - 1)
-        share = time * self.settings.step_rate - k
+        steps = time * self.settings.step_rate
+        k = int(steps)
+        if k >= self.k:
+            k = self.k - 1
+        share = steps - k
         at = k * ROW.size + AIR_OFFSET
         mach0, static0, temperature0 = AIR.unpack_from(self._buffer, at)
         mach, static, temperature = AIR.unpack_from(self._buffer, at + ROW.size)

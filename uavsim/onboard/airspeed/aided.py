@@ -29,7 +29,7 @@ from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MAX_TEMPERATURE, MIN_TEMPERATURE
 from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
-from uavsim.onboard.airspeed.interface import Estimate, NoiseModel, TareWindow
+from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.readmission import longest_row
 from uavsim.onboard.airspeed.rest_force import RestForce
@@ -88,7 +88,7 @@ class AidedFilter:
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
         "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_held",
-        "_held_count", "_lag", "_lifted", "_lifts", "_measured", "_misses", "_noise", "_on_rail", "_patience",
+        "_held_count", "_measured", "_misses", "_noise", "_on_rail", "_patience",
         "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings", "_settled", "_static_age",
         "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share",
         "_total_age", "_total_variance", "_turning", "_u", "_w", "_waiting", "_watch_from", "_wind", "energy",
@@ -99,8 +99,7 @@ class AidedFilter:
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
-        self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate)
-        self._lag = noise.accelerometer_lag
+        self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
         self._rest = RestForce(noise.accelerometer_sd)
         self._rows: deque[Row] = deque(maxlen=ROWS)
         self._total_age = 0.5 * noise.total_window + noise.total_lag
@@ -122,7 +121,6 @@ class AidedFilter:
         self._tare = 0.0
         self._settled, self._patience, self._misses = False, inf, 0
         self._watch_from = inf
-        self._lifted, self._lifts = 0.0, 0
         self._begin_watch()
         self.news: list[tuple[float, str, str, str]] = []
         self._u = self._w = 0.0
@@ -130,11 +128,13 @@ class AidedFilter:
 
     # -- readings ----------------------------------------------------------------------------------------------------
 
-    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
-        """Take one reading of specific force; see `Estimator`."""
-        self._gained.add(t - self._lag, fx)
-        self._lifted += fz
-        self._lifts += 1
+    @property
+    def accelerometer(self) -> Feel:
+        """What takes a reading of specific force; see `Estimator`. Flying, that is the integral, without a detour."""
+        return self._gained.add if self.flying else self._wait
+
+    def _wait(self, t: float, fx: float, fy: float, fz: float) -> None:
+        self._gained.add(t, fx, fy, fz)
         if not self.flying:
             self._rest.add(t, fx)
 
@@ -309,8 +309,7 @@ class AidedFilter:
         nis = energy.static(reading, self._static_variance, self._density * energy.v * ahead)
         self._misses = 0 if energy.taken else self._misses + 1
         if self.time > self._watch_from:
-            lift, self._lifted, self._lifts = -self._lifted / self._lifts if self._lifts else nan, 0.0, 0
-            kind = self.static_watch.take(at, reading, lift, self._density)
+            kind = self.static_watch.take(at, reading, self._gained.lift(), self._density)
             if kind or self._misses >= PERSISTENT:
                 self._flag_static(kind or "jump")
         elif self._misses >= PERSISTENT:  # no spike, and too early for a fault: it is rather the filter that is wrong

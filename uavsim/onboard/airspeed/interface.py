@@ -6,6 +6,7 @@ An estimator that goes by the pressures alone takes readings of specific force, 
 flight computer serves all kinds.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Protocol
 
@@ -13,6 +14,8 @@ from annotated_types import Ge, Interval
 
 Estimate = tuple[float, float, float, float, float, float, bool, float, float]
 """t s, airspeed, airspeed_sd, airspeed_raw m/s, p_total (tared), p_static Pa, valid, nis_total, nis_static."""
+Feel = Callable[[float, float, float, float], None]
+"""Takes a reading of specific force: t, f_x, f_y, f_z."""
 TareWindow = tuple[float, float]
 """Readings with start < t ≤ end, s, are under the cover."""
 
@@ -29,8 +32,12 @@ class Estimator(Protocol):
     ) -> Estimate | None:
         """Take one reading of the head and say what is known after it; None if it is not newer than the last."""
 
-    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
-        """Take one reading of specific force, m/s², in the order of the time stamps with those of the head."""
+    @property
+    def accelerometer(self) -> Feel:
+        """What takes a reading of specific force at present, in the order of the time stamps with those of the head.
+
+        A method does. What it was before a launch was recognised serves afterwards, too, if more slowly.
+        """
 
     def launched(self, t: float) -> None:
         """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""

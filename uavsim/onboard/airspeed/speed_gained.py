@@ -3,21 +3,24 @@
     u(t) = ∫ f_x dt,        w(t) = Σ (σ_a·Δt)²
 
 u by the trapezoidal rule between readings, w the variance that white noise of standard deviation σ_a a reading has
-brought into it. A gap in the readings, five periods and more, and the time beyond the newest one count with the mean of
-the readings beside them and with an unknown acceleration of 5 m/s² standard deviation throughout.
+brought into it, which grows with time alone. A gap in the readings, five periods and more, and the time beyond the
+newest one count with the mean of the readings beside them and with an unknown acceleration of 5 m/s² standard deviation
+throughout.
 
-Fixed memory: the readings of the last `SIZE` periods.
+Fixed memory: the readings of the last `SIZE` periods and the last `GAPS` gaps.
 """
 
-from math import inf
+from collections import deque
+from math import inf, nan
 
 SIZE = 1024  # readings; at 1 kHz a second
+GAPS = 16  # that are remembered; more than that in a second is no accelerometer
 GAP = 5.0  # periods
 GAP_SD = 5.0  # m/s², what an acceleration that nobody has read may be: that of a strong pull-up in flight
 
 
 class SpeedGained:
-    """Ring of the last readings of f_x, summed.
+    """Ring of the last integrals of f_x, and the mean of −f_z.
 
     Parameters
     ----------
@@ -27,58 +30,67 @@ class SpeedGained:
         Nominal rate of the readings, Hz.
     size : int
         How many are kept.
-
-    Attributes
-    ----------
-    newest : float
-        Time of the last reading, s; -inf before the first.
+    lag : float
+        Age of a reading at its time stamp, s.
     """
 
-    __slots__ = ("_f", "_filled", "_gap", "_head", "_period", "_rate", "_size", "_t", "_u", "_w", "_white", "newest")
+    __slots__ = (
+        "_f", "_first", "_gap", "_gaps", "_head", "_lag", "_lift", "_lifts", "_newest", "_rate", "_size", "_sum", "_t",
+        "_u", "_white",
+    )  # fmt: skip
 
-    def __init__(self, sd: float, rate: float, size: int = SIZE) -> None:
-        self._rate, self._period, self._size = rate, 1.0 / rate, size
+    def __init__(self, sd: float, rate: float, size: int = SIZE, lag: float = 0.0) -> None:
+        self._rate, self._size, self._lag = rate, size, lag
         self._gap = GAP / rate
         self._white = sd * sd / rate
-        self._t, self._u, self._w, self._f = ([0.0] * size for _ in range(4))
-        self._head, self._filled = -1, 0
-        self.newest = -inf
+        self._t, self._u = [-inf] * size, [0.0] * size  # time stamps
+        self._gaps: deque[tuple[float, float, float]] = deque(maxlen=GAPS)  # begin, end, variance
+        self._head, self._sum, self._f = -1, 0.0, 0.0
+        self._first, self._newest = inf, -inf
+        self._lift, self._lifts = 0.0, 0
 
     @property
     def oldest(self) -> float:
-        """Time of the oldest reading that is kept, s; inf without any."""
-        return self._t[self._head - self._filled + 1] if self._filled else inf
+        """Instant of the oldest reading that is kept, s; inf without any."""
+        oldest = self._t[self._head + 1 - self._size]
+        return (oldest if oldest > -inf else self._first) - self._lag
 
-    def add(self, t: float, f: float) -> None:
+    def add(self, t: float, fx: float, _fy: float = 0.0, fz: float = 0.0) -> None:
         """Take a reading; one that is no number, or not newer than the last, is passed over."""
-        elapsed = t - self.newest
-        if not (elapsed > 0.0 and -inf < f < inf):
-            return
-        head = self._head
-        following = head + 1 if head + 1 < self._size else 0
-        if elapsed <= self._gap:
-            self._u[following] = self._u[head] + 0.5 * (self._f[head] + f) * elapsed
-            self._w[following] = self._w[head] + self._white * elapsed
-        elif elapsed < inf:
-            self._u[following] = self._u[head] + 0.5 * (self._f[head] + f) * elapsed
-            self._w[following] = self._w[head] + self._white * elapsed + (GAP_SD * elapsed) ** 2
-        self._t[following], self._f[following] = t, f
-        self._head, self.newest = following, t
-        if self._filled < self._size:
-            self._filled += 1
+        elapsed = t - self._newest
+        if not (0.0 < elapsed <= self._gap and -inf < fx < inf):
+            if not (elapsed > 0.0 and -inf < t < inf and -inf < fx < inf):
+                return
+            if elapsed < inf:
+                self._gaps.append((self._newest, t, (GAP_SD * elapsed) ** 2))
+            else:
+                self._first, self._f, elapsed = t, fx, 0.0
+        u = self._sum = self._sum + 0.5 * (self._f + fx) * elapsed
+        self._f, self._newest = fx, t
+        self._lift -= fz
+        self._lifts += 1
+        head = self._head = (self._head + 1) % self._size
+        self._t[head], self._u[head] = t, u
+
+    def lift(self) -> float:
+        """Return the mean of −f_z since it was last asked for, m/s²; NaN without a reading."""
+        lift, lifts = self._lift, self._lifts
+        self._lift, self._lifts = 0.0, 0
+        return lift / lifts if lifts else nan
 
     def at(self, t: float) -> tuple[float, float]:
         """Return u, m/s, and w, m²/s², at a time; before the oldest reading those of the oldest."""
-        head = self._head
-        if t >= self.newest:
-            beyond = t - self.newest
+        t += self._lag
+        beyond = t - self._newest
+        if beyond >= 0.0:
             if beyond <= self._gap:
-                return self._u[head] + self._f[head] * beyond, self._w[head] + self._white * beyond
+                return self._sum + self._f * beyond, self._variance(t)
             if beyond == inf:
                 return 0.0, 0.0
-            return self._u[head] + self._f[head] * self._gap, self._w[head] + (GAP_SD * beyond) ** 2
-        times, last = self._t, self._filled - 1
-        back = int((self.newest - t) * self._rate)  # a guess, right if no reading is missing
+            return self._sum + self._f * self._gap, self._variance(self._newest) + (GAP_SD * beyond) ** 2
+        times, head = self._t, self._head
+        last = self._size - 1
+        back = int(-beyond * self._rate)  # a guess, right if no reading is missing
         if back > last:  # noqa: PLR1730 - a call of min costs a tenth of a microsecond
             back = last
         while back < last and times[head - back] > t:
@@ -87,8 +99,17 @@ class SpeedGained:
             back -= 1
         i = head - back
         start = times[i]
-        if back == 0 or t <= start:
-            return self._u[i], self._w[i]
+        if start == -inf or t <= start:  # before the oldest
+            oldest = self.oldest + self._lag
+            return (self._u[0] if start == -inf else self._u[i]), self._variance(oldest if oldest > t else t)
         share = (t - start) / (times[i + 1] - start)
-        u, w = self._u[i], self._w[i]
-        return u + share * (self._u[i + 1] - u), w + share * (self._w[i + 1] - w)
+        u = self._u[i]
+        return u + share * (self._u[i + 1] - u), self._variance(t)
+
+    def _variance(self, t: float) -> float:
+        """White noise until t, and what gaps have left."""
+        variance = self._white * (t - self._first)
+        for begin, end, unread in self._gaps:
+            if t > begin:
+                variance += unread if t >= end else unread * (t - begin) / (end - begin)
+        return variance
