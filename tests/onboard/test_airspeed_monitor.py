@@ -145,7 +145,7 @@ def evidence(*, gust, climb=0.0, shut=None, readings=3000, seed=5, bias=0.2):
     read = pressure + NOISE * generator.standard_normal(readings)
     gained = (9.81 * climb / 32.0 + bias) * DT  # f_x of a steady climb, and its bias
     return np.array([
-        test.add(z, p, 0.0, gained, DT, SLOPE, max(spread, 6.4e-5 * 32.0 * DT))
+        test.add(z, p, 0.0, gained, DT, SLOPE, max(spread, 3.6e-5 * 32.0 * DT))
         for z, p in zip(read.tolist(), static.tolist(), strict=True)
     ])  # fmt: skip
 
@@ -161,7 +161,7 @@ def test_live_ports_give_no_evidence(gust, climb):
 def test_shut_ports_do(gust, climb):
     """10 records each: above the level within 2 s, in gusts of 1 m/s or a climb of 2 m/s; 2.7 Pa at 100 Hz.
 
-    In gusts alone half of them (2.7 Pa is the noise at which the sum's mean just reaches the level: ½ ln(S/R) − ½(1 − R/S)
+    In gusts alone half: at 2.7 Pa the mean of the sum just reaches the level, ½ ln(S/R) − ½(1 − R/S)
     = 0.12 a reading).
     """
     level = FROZEN if gust else CALM_LEVEL

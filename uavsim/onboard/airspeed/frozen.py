@@ -23,10 +23,10 @@ may be still, so the filter's floor does not count as evidence: there STILL take
 from math import log
 
 BIAS_SD = 0.5  # m/s², the part's bias and the angle of attack
-STILL = 0.08  # m/s, turbulence that is expected at the least where none is declared
+STILL = 0.06  # m/s, turbulence that is expected at the least where none is declared
 LEAST, MOST = -4.0, 2.0  # nats, what one reading may say for the frozen port
 TURNED = 5.0  # times as fast as in still air b wanders in declared turbulence, whose vertical gusts turn f_x
-DOUBT = 0.015  # nats a reading that still air takes off
+DOUBT = 0.02  # nats a reading that still air takes off
 SURPRISE = 9.0  # NIS, from which on a healthy model that is ahead doubts its pressure
 
 
