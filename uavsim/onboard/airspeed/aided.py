@@ -438,6 +438,7 @@ class AidedFilter:
         valid = (
             speed >= VALID * sd
             and self._measured
-            and (sd < COASTED or not (self.watch.faulty or self.static_watch.faulty))
+            and (sd < COASTED or not self.watch.faulty)
+            and not self.static_watch.faulty  # without it V and the climb are hardly told apart
         )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static
