@@ -333,7 +333,10 @@ class AidedFilter:
         if not self._settled and not self._settle(reading):
             return nan
         before, pushed = self._held, self._push(end - noise.total_lag)
-        energy.bb += self._scale_variance * abs(pushed * pushed - before * before)
+        if pushed != before:
+            widened = self._scale_variance * abs(pushed * pushed - before * before)
+            energy.bb += widened
+            self.watch.jump(self.time, widened)
         variance = self._total_variance
         if behind > 0.0:  # an older reading than the filter has taken: as if V had not moved by more than its gust
             slope = self._density * energy.v

@@ -34,8 +34,8 @@ class PortMonitor:
 
     Parameters
     ----------
-    bias_sd, bias_rate : float
-        Standard deviation of b, m/s², and how fast it wanders in steady flight, (m/s²)/√s.
+    bias_rate : float
+        How fast b wanders in steady flight, (m/s²)/√s.
     variance : float
         Of a reading's noise, Pa².
     walk : float
@@ -53,10 +53,9 @@ class PortMonitor:
         The comparison of a live port with one that is shut.
     """
 
-    __slots__ = ("_down", "_gusts", "_level", "_rate", "_slide", "_up", "_variance", "back", "frozen")
+    __slots__ = ("_down", "_gusts", "_level", "_rate", "_up", "_variance", "back", "frozen")
 
-    def __init__(self, bias_sd: float, bias_rate: float, variance: float, walk: float, usual: int, gusts: bool) -> None:
-        self._slide = SLIDE * bias_sd * bias_sd
+    def __init__(self, bias_rate: float, variance: float, walk: float, usual: int, gusts: bool) -> None:
         self._variance, self._rate, self._gusts = variance, bias_rate, gusts
         self._level = FROZEN if gusts else CALM
         self.back = Readmission(variance, walk, usual)
@@ -67,7 +66,7 @@ class PortMonitor:
         self._up = self._down = 0.0
         self.frozen = FrozenTest(self._variance, self._rate, self._gusts)
 
-    def add(self, reading: float, innovation: float, nis: float, bias: float) -> str:
+    def add(self, reading: float, innovation: float, nis: float, slide: float) -> str:
         """Take what a reading came to, after `frozen` has taken it.
 
         Parameters
@@ -76,8 +75,8 @@ class PortMonitor:
             Pa.
         nis : float
             ν².
-        bias : float
-            b, m/s².
+        slide : float
+            b² over the variance that b may have.
 
         Returns
         -------
@@ -99,6 +98,6 @@ class PortMonitor:
                 if test.evidence < CERTAIN * self._level and test.misfit > UNFIT * sqrt(2.0 * test.count)
                 else "frozen"
             )
-        if up > LEVEL or down > LEVEL or bias * bias > self._slide:
+        if up > LEVEL or down > LEVEL or slide > SLIDE:
             return "drift"
         return ""

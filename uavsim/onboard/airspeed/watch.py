@@ -14,7 +14,7 @@ A static pressure that stands still in a climb makes the total pressure wrong, t
 the total pressure is no constant, and the static pressure is: that one is to blame.
 """
 
-from math import inf
+from math import exp, inf
 
 from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
 from uavsim.onboard.airspeed.energy import EnergyFilter
@@ -58,15 +58,16 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_bb", "_before", "_bias", "_bias_sd", "_declared", "_p", "_still", "_t", "_t0", "_u", "_u0", "_v", "_vv",
-        "faulty", "port",
+        "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_jumped", "_jumped_at", "_p", "_still", "_t",
+        "_t0", "_u", "_u0", "_v", "_vv", "faulty", "port",
     )  # fmt: skip
 
     def __init__(self, aided: AidedSettings, variance: float, walk: float, usual: int = 0) -> None:
         self._declared = aided.gust_sd > aided.gust_floor
         self._still = 2.0 * STILL * STILL / aided.gust_length
-        self._bias_sd = aided.bias_sd
-        self.port = PortMonitor(aided.bias_sd, aided.bias_rate, variance, walk, usual, self._declared)
+        self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
+        self._jumped, self._jumped_at = 0.0, -inf
+        self.port = PortMonitor(aided.bias_rate, variance, walk, usual, self._declared)
         self.faulty = False
         self._t = self._t0 = -inf
         self._before: tuple[Kept, ...] = ((-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),)
@@ -103,7 +104,17 @@ class TotalWatch:
             self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
             self._bias, self._bb = test.bias, test.bb
         self._t, self._u = t, gained
-        return port.add(reading, energy.innovation, nis, energy.b)
+        return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
+
+    def jump(self, t: float, variance: float) -> None:
+        """Be told by how much the push has widened b at `t`, s: its variance, (m/s²)², which b forgets in its time."""
+        self._jumped, self._jumped_at = self._bias_variance(t) - self._bias_sd**2 + variance, t
+
+    def _bias_variance(self, t: float) -> float:
+        """What b may be off by at `t`, s, (m/s²)²."""
+        since = t - self._jumped_at
+        left = self._jumped * exp(-2.0 * since / self._bias_time) if since > 0.0 else self._jumped
+        return self._bias_sd * self._bias_sd + left
 
     def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
         """Flag the port, and put the filter to where it would be without what it took since."""
