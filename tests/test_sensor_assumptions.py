@@ -1,7 +1,7 @@
 """Assumptions about sensors, flown: each setting does in the loop what its docstring says.
 
-Figures are those of mechanics and of gas dynamics; tolerances cover noise and what the filter lags behind. The published
-estimator flies: it takes what the pressures say, where the aided one would doubt sensors without any noise.
+Figures are those of mechanics and of gas dynamics; tolerances cover noise and what the filter lags behind. The
+published estimator flies: it takes what the pressures say, where the aided one would doubt sensors without any noise.
 """
 
 import math
