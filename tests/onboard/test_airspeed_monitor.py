@@ -246,7 +246,7 @@ def test_a_port_that_is_still_shut_is_not_taken_back():
 
 
 def test_a_bias_that_the_push_may_have_left_is_no_slide():
-    """In 2 of 100 matched launches the scale error left b at 1.5 and 1.8 m/s², and healthy ports were flagged for it."""
+    """In 2 of 100 matched launches the scale error left b at 1.5 and 1.8 m/s²; healthy ports were flagged for it."""
     watch = TotalWatch(AidedSettings(), variance=7.0, walk=0.007)
     pushed = (0.005 * 87.0) ** 2
     watch.jump(0.0, pushed)
