@@ -349,11 +349,26 @@ def test_launch_without_any_reading_before():
     assert not row[6]
     for k in range(1, 3001):
         t = 1.01 + 0.001 * k
-        estimator.accelerometer(t, 0.0, 0.0, 0.0)
+        estimator.accelerometer(t, 0.0, 0.0, -9.81)  # level; 0 would be a fall, which the static port denies
         if k % 10 == 0:
-            row = estimator.step(t, mean_total(9.0 + 1e-4 * (k % 31), 0.0), STATIC, KELVIN, t, t)
+            row = estimator.step(t, mean_total(9.0 + 1e-4 * (k % 31), 0.0), STATIC + 1e-3 * (k % 31), KELVIN, t, t)
     assert row[1] == pytest.approx(speed_at(9.0), abs=0.3)
     assert row[6]
+
+
+def test_a_force_that_is_of_no_flight_ends_in_the_pressures_alone():
+    """On a centrifuge at 15 g the filter went beyond every number; now it says so and goes by the pressures."""
+    estimator = AidedFilter(SETTINGS, NOISE)
+    estimator.launched(1.0)
+    for k in range(1, 20_001):
+        t = 1.0 + 0.001 * k
+        estimator.accelerometer(t, 150.0, 0.0, -9.81)
+        if k % 10 == 0:
+            row = estimator.step(t, mean_total(9.0 + 1e-4 * (k % 31), 0.0), STATIC + 1e-3 * (k % 31), KELVIN, t, t)
+    assert "diverged" in [kind for *_, kind in estimator.news]
+    assert not estimator.flying
+    assert row[1] == pytest.approx(speed_at(9.0), abs=0.3)
+    assert row[5] == pytest.approx(STATIC, abs=1.0)
 
 
 def test_memory_is_constant():

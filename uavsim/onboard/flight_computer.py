@@ -26,7 +26,7 @@ Sees readings and time, never truth. Scalar, constant memory.
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite, isnan, nan, radians
+from math import inf, isfinite, isnan, nan, radians
 from typing import Annotated, Any, Protocol
 
 from annotated_types import Interval
@@ -333,7 +333,7 @@ class FlightComputer:
             self._doubt(t, valid)
         if isfinite(temperature):
             self._temperature = temperature
-        if self._reference_pressure is None or isnan(self._temperature) or not isfinite(p_static):
+        if self._reference_pressure is None or isnan(self._temperature) or not 0.0 < p_static < inf:
             return
         if self._trusted and not valid:
             return

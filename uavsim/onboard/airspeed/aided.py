@@ -44,6 +44,8 @@ VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
 PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
 WATCH = 2.0  # s after the recognition, from which the total port is watched
+FASTEST = 450.0  # m/s; Mach 1 and more is outside the relation between pressures and airspeed
+THINNEST, THICKEST = 1e3, 2e5  # Pa, beyond the range of any of the sensors
 COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
@@ -143,7 +145,12 @@ class AidedFilter:
     ) -> Estimate | None:
         """Take one reading of the head; as `PaperFilter.step`, the pressures being the filter's own at `t`."""
         if self.flying:
-            return self._fly(t, p_total, p_static, temperature, t_total, t_static)
+            estimate = self._fly(t, p_total, p_static, temperature, t_total, t_static)
+            energy = self.energy
+            if -FASTEST < energy.v < FASTEST and THINNEST < energy.p < THICKEST:
+                return estimate
+            self.flying = False  # the force is of no flight: from here on by the pressures alone
+            self.news.append((t, "airspeed_fault", "both", "diverged"))
         self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
         return self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
 
