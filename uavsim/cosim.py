@@ -220,7 +220,8 @@ class Cosimulation:
                 if air and air[0][0] < reading[0]:
                     air = self._take_air(air, reading[0])
                 keep(reading)
-                take(*reading)
+                due, fx, fy, fz = reading  # `take(*reading)` costs twice as much
+                take(due, fx, fy, fz)
             if air:
                 self._take_air(air, math.inf)
             if computer.commands is not commands:

@@ -341,6 +341,31 @@ def test_a_repeated_conversion_is_not_taken_again():
     )
 
 
+def test_what_waits_may_be_done_early_or_late():
+    """`tidy` after each reading of the head, or never: bit for bit the same estimates, and the same flags."""
+    rows = readings(until=9.0, noise=1.2)
+    shut = next(row[2] for row in rows if row[0] == "air" and row[1] > 6.0)
+    rows = [(kind, t, shut, *rest[1:]) if kind == "air" and t > 6.0 else (kind, t, *rest) for kind, t, *rest in rows]
+    late = AidedFilter(SETTINGS, NOISE, COVERED)
+    early = AidedFilter(SETTINGS, NOISE, COVERED)
+    step, told = early.step, []
+
+    def tidied(*reading):
+        estimate = step(*reading)
+        told.append(estimate)
+        early.tidy()
+        return estimate
+
+    class Tidy:
+        accelerometer, launched, step = property(lambda _: early.accelerometer), early.launched, staticmethod(tidied)
+
+    one, other = fly(late, rows), fly(Tidy(), rows)
+    late.tidy()
+    assert repr(one) == repr(other)
+    assert late.news == early.news
+    assert [event[1:] for event in late.news] == [("airspeed_fault", "total", "stuck")]
+
+
 def test_launch_without_any_reading_before():
     """Told of a launch out of nothing it starts where it is, says so by its error bar, and gets there."""
     estimator = AidedFilter(SETTINGS, NOISE)

@@ -71,6 +71,9 @@ class Estimator(Protocol):
     def accelerometer(self) -> Feel:
         """What takes a reading of specific force; another, quicker one perhaps once a launch has been recognised."""
 
+    def tidy(self) -> None:
+        """Do what can wait until the estimate has been told: with the next reading of specific force."""
+
     def launched(self, t: float) -> None:
         """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
 
@@ -235,6 +238,8 @@ class FlightComputer:
         estimate = self.estimator.step(t, p_total, p_static, temperature, t_total, t_static)
         if estimate is None:
             return None
+        if self._feel is not None:
+            self._feel = self._tidy
         if self._news:
             self._report()
         if self._reference_pressure is None and isfinite(estimate[5]):
@@ -242,6 +247,12 @@ class FlightComputer:
         if self.state == "flying":
             self._hold(estimate, temperature)
         return estimate
+
+    def _tidy(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Take the reading after one of the head: there is time for what the estimator has put off."""
+        self._feel = self.estimator.accelerometer
+        self._feel(t, fx, fy, fz)
+        self.estimator.tidy()
 
     def _report(self) -> None:
         """Note what the estimator has found of its sensors: what was flagged and what was taken back."""
@@ -310,7 +321,6 @@ class FlightComputer:
             self._note(t, "motor_on")
             self._command(throttle=self.settings.throttle_level)
             self.state, self._last_estimate = "flying", t
-            self._feel = self.estimator.accelerometer if self.estimator.aided else None
         else:
             self._note(t, "rearmed")
             self.detector.reset()

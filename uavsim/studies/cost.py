@@ -91,17 +91,19 @@ def _run(
     )
     feel, detect, step = estimator.accelerometer, detector.step, estimator.step
     rows = iter([*air, (float("inf"),) * 6])
-    row = next(rows)
+    row, told = next(rows), False
     begun = perf_counter()
     for force in forces:
         start = perf_counter() if steps is not None else 0.0
         feel(*force)
+        if told:  # as the flight computer does it
+            estimator.tidy()
+            feel, told = estimator.accelerometer, False
         if detect(*force):
             estimator.launched(force[0])
-            feel = estimator.accelerometer  # as the flight computer asks for it again
         if row[0] <= force[0]:
             step(*row)
-            row = next(rows)
+            row, told = next(rows), True
         if steps is not None:
             steps.append(perf_counter() - start)
     return perf_counter() - begun

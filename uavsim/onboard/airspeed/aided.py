@@ -16,8 +16,8 @@ At first V is as likely below 0 as above, and a total pressure, even in V, would
 out until the push has brought V to 3 σ_V; what it would have said of the wind, later ones say better.
 
 The specific force bends the membranes: of that pressure error the known part is taken off, and what is not known of its
-coefficient is a state. The scale error of the accelerometer, σ_k, is a bias that comes and goes with the push: b gains
-the variance σ_k² |Δ(f²)| when the mean specific force f changes.
+coefficient is a state, until the flight is steady. The scale error of the accelerometer, σ_k, is a bias that comes and
+goes with the push: b gains the variance σ_k² |Δ(f²)| when the mean specific force f changes.
 
 Airspeed is valid from V = 8 σ_V on, which is 2 V* of the pressures' law (`paper`) and holds for a coasting filter, too.
 """
@@ -27,10 +27,12 @@ from math import expm1, inf, log1p, nan, sqrt
 
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MAX_TEMPERATURE, MIN_TEMPERATURE
-from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
+from uavsim.onboard.airspeed.energy import GATE, SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
+from uavsim.onboard.airspeed.one_pass import OnePassFilter
+from uavsim.onboard.airspeed.push import Push
 from uavsim.onboard.airspeed.readmission import longest_row
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
@@ -43,15 +45,13 @@ TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
 VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
 PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
-WATCH = 2.0  # s after the recognition, from which the total port is watched
+STEADY = 2.0  # s after the recognition, from which on the ports are watched and k is known
 FASTEST = 450.0  # m/s; Mach 1 and more is outside the relation between pressures and airspeed
 THINNEST, THICKEST = 1e3, 2e5  # Pa, beyond the range of any of the sensors
 COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
-SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
 MODEL = 0.1  # Pa, what the model of a pressure is off by, whatever its sensor: 0.1 ms of the stroke's rise
 GRAVITY = 9.80665  # m/s², ISO 80000-3
-GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
 OLDEST = 0.05  # s; a reading that is further behind the filter is not taken
 ALONE = 0.02  # s; a static pressure so far ahead of the filter comes without a total pressure: it goes on by itself
 SLOWEST = 1.0  # m/s; below it the gust's correlation time is that of this airspeed
@@ -87,14 +87,14 @@ class AidedFilter:
     """
 
     aided = True
-    core: type[EnergyFilter] = EnergyFilter
+    core: type[EnergyFilter] = OnePassFilter
     __slots__ = (
-        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_held",
-        "_held_count", "_measured", "_misses", "_noise", "_on_rail", "_patience",
-        "_raw_scale", "_rest", "_rows", "_same", "_scale_variance", "_settings", "_settled", "_static_age",
-        "_static_variance", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share",
-        "_total_age", "_total_variance", "_turning", "_u", "_w", "_waiting", "_watch_from", "_wind", "energy",
-        "flying", "news", "static_watch", "time", "watch",
+        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_measured",
+        "_misses", "_noise", "_on_rail", "_patience", "_push", "_push_variance", "_raw_scale", "_rest", "_rows",
+        "_scale_variance", "_settings", "_settled", "_static_age", "_static_seen", "_static_variance", "_steady_from",
+        "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age",
+        "_total_seen", "_total_variance", "_turning", "_u", "_w", "_waiting", "_wind", "energy", "flying", "news",
+        "static_watch", "time", "watch",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -112,8 +112,7 @@ class AidedFilter:
         aided = settings.aided
         self._gust, self._ground = gust_density(aided, 0.0), nan
         self._gust_falls = aided.gust_height > 0.0 and aided.gust_sd > 0.0
-        self._same = SAME * noise.accelerometer_sd / sqrt(max(1.0, noise.total_window * noise.accelerometer_rate))
-        self._held, self._held_count, self._force = 0.0, 1, 0.0
+        self._push, self._force = Push(noise, self._gained, self._rest), 0.0
         self._on_rail = aided.on_rail
         self._temperature_share = 0.5 * noise.temperature_sd
         self._raw_scale = self._waiting.scale
@@ -121,8 +120,8 @@ class AidedFilter:
         self.time = self._t = self._t_total = self._t_static = -inf
         self._temperature = self._density = self._gas = self._heat = nan
         self._tare = 0.0
-        self._settled, self._patience, self._misses = False, inf, 0
-        self._watch_from = inf
+        self._settled, self._patience, self._misses, self._push_variance = False, inf, 0, 0.0
+        self._steady_from = inf
         self._begin_watch()
         self.news: list[tuple[float, str, str, str]] = []
         self._u = self._w = 0.0
@@ -164,9 +163,9 @@ class AidedFilter:
         self.flying = True
         self.time = self._t = start
         self._u, self._w = self._gained.at(start)
-        self._held, self._held_count = 0.0, 1
-        self._settled, self._patience = False, t + PATIENCE
-        self._watch_from = t + WATCH
+        self._push.forget()
+        self._settled, self._patience, self._push_variance = False, t + PATIENCE, 0.0
+        self._steady_from = t + STEADY
         self._begin_watch()
         self._t_total = self._t_static = -inf
         for row in self._rows:
@@ -180,6 +179,8 @@ class AidedFilter:
         walk = self._noise.walk
         self.watch = TotalWatch(self._settings.aided, self._total_variance, walk, usual[0])
         self.static_watch = StaticWatch(self._static_variance, walk, usual[1])
+        self._static_seen: tuple[float, float, float] | None = None  # Pa, its instant, s, mean of −f_z since, m/s²
+        self._total_seen: tuple[float, float] | None = None  # tared, Pa, and NIS
 
     def unfolding(self, t: float) -> None:
         """For a while trust the integral of f_x less."""
@@ -244,6 +245,8 @@ class AidedFilter:
     ) -> Estimate | None:
         if not t > self._t:
             return None
+        if self._total_seen is not None or self._static_seen is not None:
+            self.tidy()
         self._t = t
         energy = self.energy
         if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
@@ -255,56 +258,104 @@ class AidedFilter:
         self._density = energy.p / self._gas
         if self._gust_falls:
             self._gust = gust_density(self._settings.aided, (self._ground - energy.p) / (GRAVITY * self._density))
-        nis_total = nis_static = nan
-        new_static = t_static > self._t_static
-        if t_total > self._t_total:
-            self._t_total = t_total
-            if 0.0 < p_total < inf:
-                self._advance(t_total - self._total_age)
-                if new_static:
-                    self._t_static, new_static = t_static, False
-                    nis_static = self._take_static(p_static, t_static - self._static_age)
-                nis_total = self._take_total(p_total, t_total)
-        if new_static:
-            self._t_static = t_static
-            at = t_static - self._static_age
-            if 0.0 < p_static < inf and at - self.time > ALONE:
-                self._advance(at)
-            nis_static = self._take_static(p_static, at)
+        nis_total, nis_static = self._take(p_total, p_static, t_total, t_static)
         raw = nan
         if 0.0 < p_total < inf and 0.0 < p_static < inf and temperature > 0.0:  # as `airdata.compressible_airspeed`
             excess = (p_total - self._tare - p_static) / p_static
             raw = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess))) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
+    def _take(self, p_total: float, p_static: float, t_total: float, t_static: float) -> tuple[float, float]:
+        """Take what is new of a reading of the head; return the normalised innovations squared."""
+        nis_total = nis_static = nan
+        new_total, new_static = t_total > self._t_total, t_static > self._t_static
+        if new_total:
+            self._t_total, new_total = t_total, 0.0 < p_total < inf
+        if new_static:
+            self._t_static, new_static = t_static, 0.0 < p_static < inf
+        to, at = t_total - self._total_age, t_static - self._static_age
+        if new_total and new_static and self._steady(to, at):
+            nis_total, nis_static = self._take_both(p_total, p_static, t_total, to, at)
+        else:
+            if new_total:
+                self._advance(to)
+            elif new_static and at - self.time > ALONE:
+                self._advance(at)
+            if new_static:
+                nis_static = self._take_static(p_static, at)
+            if new_total:
+                nis_total = self._take_total(p_total, t_total)
+        return nis_total, nis_static
+
     def _warm(self, temperature: float) -> None:
         """Take a temperature of the air."""
         self._temperature, self._gas = temperature, GAS_CONSTANT_DRY_AIR * temperature
         self._heat = SEVEN_R * temperature * self._raw_scale * self._raw_scale
+
+    def _steady(self, to: float, at: float) -> bool:
+        """Whether both ports are sound, and both readings of after the filter's time and of about the same instant."""
+        return (
+            self.time > self._steady_from
+            and to > self.time
+            and -OLDEST < to - at < OLDEST
+            and self._settled
+            and not self.watch.faulty
+            and not self.static_watch.faulty
+        )
+
+    def _take_both(self, p_total: float, p_static: float, t_total: float, to: float, at: float) -> tuple[float, float]:
+        """What `_advance`, `_take_static` and `_take_total` do, at once."""
+        energy, density, dt = self.energy, self._density, to - self.time
+        if energy.kk > 0.0:
+            self._push_variance = energy.know_push()
+        gained, variance = self._go(to, dt)
+        pushed = self._pushed(t_total)
+        tared = p_total - self._tare - self._noise.acceleration * pushed
+        nis_static, nis_total = energy.fly(
+            dt,
+            gained,
+            variance,
+            density,
+            p_static,
+            self._static_variance,
+            density * energy.v * (to - at),
+            tared - pushed * energy.k,
+            self._total_variance + pushed * pushed * self._push_variance,
+            self._heat,
+        )
+        self._misses = 0 if nis_static <= GATE else self._misses + 1
+        self._static_seen = p_static, at, self._gained.lift()
+        self._total_seen = tared, nis_total
+        return nis_total, nis_static
 
     def _advance(self, to: float) -> None:
         """Predict to a later time; an earlier one leaves the filter where it is."""
         dt = to - self.time
         if not dt > 0.0:
             return
-        energy = self.energy
+        gained, variance = self._go(to, dt)
+        if self.watch.faulty:
+            self.watch.carry(self.energy, dt, gained, variance, self._density)
+        else:
+            self.energy.predict(dt, gained, variance, self._density, self._force > self._on_rail)
+
+    def _go(self, to: float, dt: float) -> tuple[float, float]:
+        """Go on to a later time; return ∫ f_x dt, m/s, and the variance that gust and accelerometer add to V's."""
+        v = self.energy.v
         u, w = self._gained.at(to)
         gained = u - self._u
-        force = self._force = gained / dt - self._rest.mean
-        variance = self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
+        self._force = gained / dt - self._rest.mean
+        variance = self._gust * (v if v > SLOWEST else SLOWEST) * dt + w - self._w
         begin, end, rate = self._folded
         if to > begin and self.time < end:
             variance += rate * (min(to, end) - max(self.time, begin))
-        if self.watch.faulty:
-            self.watch.carry(energy, dt, gained, variance, self._density)
-        else:
-            energy.predict(dt, gained, variance, self._density, force > self._on_rail)
         self.time, self._u, self._w = to, u, w
+        return gained, variance
 
     def _take_static(self, reading: float, at: float) -> float:
         energy = self.energy
         ahead = self.time - at
-        if not (0.0 < reading < inf and -OLDEST < ahead < OLDEST):
+        if not -OLDEST < ahead < OLDEST:
             return nan
         if self.static_watch.faulty:
             difference = reading - energy.p - self._density * energy.v * ahead * energy.s
@@ -315,10 +366,8 @@ class AidedFilter:
             return nan
         nis = energy.static(reading, self._static_variance, self._density * energy.v * ahead)
         self._misses = 0 if energy.taken else self._misses + 1
-        if self.time > self._watch_from:
-            kind = self.static_watch.take(at, reading, self._gained.lift(), self._density)
-            if kind or self._misses >= PERSISTENT:
-                self._flag_static(kind or "jump")
+        if self.time > self._steady_from:
+            self._static_seen = reading, at, self._gained.lift()
         elif self._misses >= PERSISTENT:  # no spike, and too early for a fault: it is rather the filter that is wrong
             energy.pp += energy.innovation * energy.innovation
             energy.static(reading, self._static_variance, 0.0)
@@ -333,35 +382,45 @@ class AidedFilter:
 
     def _take_total(self, reading: float, end: float) -> float:
         energy = self.energy
-        noise = self._noise
         behind = self.time - (end - self._total_age)
         if behind > OLDEST:
             return nan
         if not self._settled and not self._settle(reading):
             return nan
-        before, pushed = self._held, self._push(end - noise.total_lag)
-        if pushed != before:
-            widened = self._scale_variance * abs(pushed * pushed - before * before)
-            energy.bb += widened
-            self.watch.jump(self.time, widened)
-        variance = self._total_variance
+        pushed = self._pushed(end)
+        variance = self._total_variance + pushed * pushed * self._push_variance
         if behind > 0.0:  # an older reading than the filter has taken: as if V had not moved by more than its gust
             slope = self._density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * self._gust * abs(energy.v) * behind
-        watch, tared = self.watch, reading - self._tare - noise.acceleration * pushed
-        if watch.faulty:
+        tared = reading - self._tare - self._noise.acceleration * pushed
+        if self.watch.faulty:
             self._coast(end, reading, tared, variance)
             return nan
         nis = energy.total(tared, variance, pushed, self._heat)
-        if not energy.taken and self.time < self._watch_from:  # so early it is rather the filter that is wrong
+        if not energy.taken and self.time < self._steady_from:  # so early it is rather the filter that is wrong
             slope = self._density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.vv += (energy.innovation / slope) ** 2
-        if self.time > self._watch_from and not self.static_watch.faulty:
-            kind = watch.take(energy, self.time, self._u, tared, nis, self._density, self._gust)
+        if self.time > self._steady_from and not self.static_watch.faulty:
+            self._total_seen = tared, nis
+        return nis
+
+    def tidy(self) -> None:
+        """Watch the ports by what was read last; the filter still stands where it stood then."""
+        if self._static_seen is not None:
+            reading, at, lift = self._static_seen
+            self._static_seen = None
+            kind = self.static_watch.take(at, reading, lift, self._density)
+            if kind or self._misses >= PERSISTENT:
+                self._flag_static(kind or "jump")
+        if self._total_seen is not None:
+            tared, nis = self._total_seen
+            self._total_seen = None
+            if self.static_watch.faulty:
+                return
+            kind = self.watch.take(self.energy, self.time, self._u, tared, nis, self._density, self._gust)
             if kind:
                 self._flag_total(kind)
-        return nis
 
     def _flag_total(self, kind: str) -> None:
         """Blame the port for what its readings show, or the other: without it the total pressure does not fit."""
@@ -404,24 +463,15 @@ class AidedFilter:
         self._settled = True
         return True
 
-    def _push(self, end: float) -> float:
-        """Mean specific force above that at rest over the total pressure's conversion, m/s².
-
-        In flight it is that since the last reading: it changes too slowly for the difference to count. Held, and
-        averaged, while it does not change by more than its noise: a slope that is noise would make the filter believe
-        that it learns k from it.
-        """
-        found = self._force
-        if not (-GENTLE < found < GENTLE and -GENTLE < self._held < GENTLE):
-            window = self._noise.total_window or 1.0 / self._noise.accelerometer_rate
-            at = self._gained.at
-            found = (at(end)[0] - at(end - window)[0]) / window - self._rest.mean
-        if abs(found - self._held) < self._same:
-            self._held_count += 1
-            self._held += (found - self._held) / self._held_count
-        else:
-            self._held, self._held_count = found, 1
-        return self._held
+    def _pushed(self, end: float) -> float:
+        """Specific force over the total pressure's conversion that ends then; a change of it widens b."""
+        before = self._push.held
+        pushed = self._push.over(end, self._force)
+        if pushed != before:
+            widened = self._scale_variance * abs(pushed * pushed - before * before)
+            self.energy.bb += widened
+            self.watch.jump(self.time, widened)
+        return pushed
 
     def _tell(self, t: float, raw: float, nis_total: float, nis_static: float) -> Estimate:
         """Predict to the time of the reading and say what is known."""

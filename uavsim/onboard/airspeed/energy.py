@@ -160,6 +160,33 @@ class EnergyFilter:
         self.sd, self.sk = stay * sd, stay * sk
         self.ss = stay * stay * ss + slope
 
+    def fly(
+        self,
+        dt: float,
+        gained: float,
+        variance: float,
+        density: float,
+        static: float,
+        static_variance: float,
+        ahead: float,
+        total: float,
+        total_variance: float,
+        heat: float,
+    ) -> tuple[float, float]:
+        """Advance in flight and take both pressures, k being known: `predict`, `static` and `total` without a push.
+
+        The arguments are theirs; returned are both normalised innovations squared.
+        """
+        self.predict(dt, gained, variance, density, False)
+        nis = self.static(static, static_variance, ahead)
+        return nis, self.total(total, total_variance, 0.0, heat)
+
+    def know_push(self) -> float:
+        """Take k for known from here on; return what its variance was, (Pa/(m/s²))²."""
+        variance, self.kk = self.kk, 0.0
+        self.vk = self.bk = self.pk = self.sk = self.dk = 0.0
+        return variance
+
     def restart(self, speed: float, variance: float) -> None:
         """Forget the airspeed for another, m/s, of the given variance, m²/s²."""
         self.v, self.vv = speed, variance

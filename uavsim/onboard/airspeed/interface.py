@@ -39,6 +39,9 @@ class Estimator(Protocol):
         A method does. What it was before a launch was recognised serves afterwards, too, if more slowly.
         """
 
+    def tidy(self) -> None:
+        """Do what can wait until the estimate has been told; without it, it is done at the next reading of the head."""
+
     def launched(self, t: float) -> None:
         """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
 

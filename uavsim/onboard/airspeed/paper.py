@@ -208,6 +208,9 @@ class PaperFilter:
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Leave a reading of specific force aside: the pressures alone count."""
 
+    def tidy(self) -> None:
+        """Nothing waits."""
+
     def launched(self, t: float) -> None:
         """Need not know of a launch."""
 

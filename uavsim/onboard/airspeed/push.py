@@ -1,0 +1,57 @@
+"""What pushes the membranes: the mean specific force above that at rest over a total pressure's conversion, m/s².
+
+In flight it is that since the last reading: it changes too slowly for the difference to count. Held, and averaged,
+while it does not change by more than its noise: a slope that is noise would make the filter believe that it learns from
+it what the membranes make of a push.
+"""
+
+from math import sqrt
+
+from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.rest_force import RestForce
+from uavsim.onboard.airspeed.speed_gained import SpeedGained
+
+SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
+GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
+
+
+class Push:
+    """The present push.
+
+    Parameters
+    ----------
+    noise : NoiseModel
+        Of head and accelerometer.
+    gained, rest : SpeedGained, RestForce
+        Of the readings of specific force.
+
+    Attributes
+    ----------
+    held : float
+        The last answer, m/s².
+    """
+
+    __slots__ = ("_count", "_gained", "_lag", "_rest", "_same", "_window", "held")
+
+    def __init__(self, noise: NoiseModel, gained: SpeedGained, rest: RestForce) -> None:
+        self._gained, self._rest, self._lag = gained, rest, noise.total_lag
+        self._window = noise.total_window or 1.0 / noise.accelerometer_rate
+        self._same = SAME * noise.accelerometer_sd / sqrt(max(1.0, noise.total_window * noise.accelerometer_rate))
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin at rest."""
+        self.held, self._count = 0.0, 1
+
+    def over(self, end: float, force: float) -> float:
+        """Return the push over a conversion that ends then, s; `force` is that since the last reading, m/s²."""
+        if not (-GENTLE < force < GENTLE and -GENTLE < self.held < GENTLE):
+            end -= self._lag
+            at = self._gained.at
+            force = (at(end)[0] - at(end - self._window)[0]) / self._window - self._rest.mean
+        if abs(force - self.held) < self._same:
+            self._count += 1
+            self.held += (force - self.held) / self._count
+        else:
+            self.held, self._count = force, 1
+        return self.held
