@@ -227,12 +227,13 @@ class PressureDescription:
         The filter y += a (x - y) passes the fraction a/(2 - a) of a white sequence's variance, and correlates what it
         passes from one reading to the next.
         """
-        return self.mode.noise_sd * self.noise_scale * self._iir_gain
+        return _with_quantisation(self.mode.noise_sd * self.noise_scale, self.resolution) * self._iir_gain
 
     @property
     def temperature_noise_sd(self) -> float:
         """The same of the thermometer, K."""
-        return self.mode.temperature_noise_sd * self.noise_scale * self._iir_gain
+        sd = self.mode.temperature_noise_sd * self.noise_scale
+        return _with_quantisation(sd, self.temperature_step) * self._iir_gain
 
     @property
     def white_sd(self) -> float:
@@ -255,6 +256,11 @@ class PressureDescription:
     @property
     def _iir_gain(self) -> float:
         return sqrt(self.iir_weight / (2.0 - self.iir_weight))
+
+
+def _with_quantisation(sd: float, step: float) -> float:
+    """Return the standard deviation of a reading: that of its noise, but at least that of rounding to `step`."""
+    return max(sd, step / sqrt(12.0))
 
 
 def _without_quantisation(sd: float, step: float) -> float:

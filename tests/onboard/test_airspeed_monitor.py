@@ -147,7 +147,7 @@ def evidence(*, gust, climb=0.0, shut=None, readings=3000, seed=5, bias=0.2):
     read = pressure + NOISE * generator.standard_normal(readings)
     gained = (9.81 * climb / 32.0 + bias) * DT  # f_x of a steady climb, and its bias
     return np.array([
-        test.add(z, p, 0.0, gained, DT, SLOPE, max(spread, 3.6e-5 * 32.0 * DT))
+        test.add(z, p, 0.0, gained, DT, SLOPE, max(spread, 3.6e-5 * 32.0 * DT), GRAVITY**2 / 32.0**2)
         for z, p in zip(read.tolist(), static.tolist(), strict=True)
     ])  # fmt: skip
 

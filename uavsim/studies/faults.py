@@ -54,8 +54,8 @@ class Case:
         How long after its beginning it has its effect, s.
     channel : str
         Which pressure it falsifies.
-    descends : float
-        When the flight computer is told to go down to 8 m, s.
+    orders : tuple of (s, str, float)
+        When, and which of the flight computer's settings is changed to what.
     """
 
     scenario: str
@@ -66,19 +66,21 @@ class Case:
     lasts: float = inf
     late: float = 0.0
     channel: str = "total"
-    descends: float = inf
+    orders: tuple[tuple[float, str, float], ...] = ()
 
 
 TOTAL, STATIC = "air_data.total_port.faults", "air_data.static_port.faults"
 BLOCKED = 'kind="blocked"'
+DOWN = ((16.0, "height", 8.0),)
 CASES = {
     "healthy-gusty": Case("gusty", ("duration=25",)),
     "healthy-calm": Case("catapult", ("duration=40",)),
-    "healthy-climb": Case("catapult", ("duration=28", *CLIMBS), descends=16.0),
+    "healthy-climb": Case("catapult", ("duration=28", *CLIMBS), orders=DOWN),
+    "healthy-speeds": Case("catapult", ("duration=32",), orders=((14.0, "airspeed", 26.0), (22.0, "airspeed", 38.0))),
     "blocked-gusts": Case("gusty", ("duration=25", *GUSTS), TOTAL, BLOCKED),
     "blocked-climb": Case("catapult", ("duration=25", *CLIMBS), TOTAL, BLOCKED, (8.5, 18.0)),
-    "blocked-descent": Case("catapult", ("duration=28", *CLIMBS), TOTAL, BLOCKED, (17.0, 18.5), descends=16.0),
-    "blocked-calm": Case("catapult", ("duration=28",), TOTAL, BLOCKED, (14.0, 18.0)),
+    "blocked-descent": Case("catapult", ("duration=28", *CLIMBS), TOTAL, BLOCKED, (17.0, 18.5), orders=DOWN),
+    "blocked-calm": Case("catapult", ("duration=40",), TOTAL, BLOCKED, (14.0, 18.0)),
     "blocked-for-3-s": Case("gusty", ("duration=30", *GUSTS), TOTAL, BLOCKED, (9.5, 15.0), lasts=3.0),
     "iced-climb": Case("catapult", ("duration=25", *CLIMBS), TOTAL, 'kind="ice",duration=4.0', (7.0, 12.0), late=4.0),
     "leak-gusts": Case("gusty", ("duration=25", *GUSTS), TOTAL, 'kind="leak",time_constant=1.0|kind="blocked"'),
@@ -152,10 +154,10 @@ def fly_case(case: Case, seed: int, extra: tuple[str, ...] = ()) -> FaultFlight:
         rows = ",".join(f"{{{fault},start={begins}{stop}}}" for fault in case.fault.split("|"))
         overrides.append(f"{case.where}=[{rows}]")
     flight = Cosimulation(load_scenario(case.scenario, overrides=overrides).with_seed(seed))
-    if case.descends < inf:
-        flight.advance(round(case.descends * STEP_RATE))
-        computer = flight.onboard.computer
-        computer.settings = replace(computer.settings, height=8.0)
+    computer = flight.onboard.computer
+    for when, setting, value in case.orders:
+        flight.advance(round(when * STEP_RATE) - flight.plant.k)
+        computer.settings = replace(computer.settings, **{setting: value})
     flight.advance(flight.steps)
     return _judge(case, seed, begins + case.late, flight)
 
@@ -171,7 +173,7 @@ def _judge(case: Case, seed: int, fault: float, flown: Cosimulation) -> FaultFli
     t, speed, sd, valid = (flight.estimate[c].to_numpy() for c in ("t", "airspeed", "airspeed_sd", "valid"))
     error = speed - np.interp(t, truth["t"].to_numpy(), truth["airspeed"].to_numpy())
     off = t[(t >= effect) & (np.abs(error) > OFF) & ~(t >= first["t"])]
-    told = (t >= first["t"]) & valid.astype(bool)
+    told = (t > first["t"]) & valid.astype(bool)  # of that reading itself it was told before the port was judged
     span = truth[(truth["t"] >= fault) & (truth["t"] < fault + WITHIN)]
     return FaultFlight(
         seed=seed,

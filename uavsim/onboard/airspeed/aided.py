@@ -89,12 +89,12 @@ class AidedFilter:
     aided = True
     core: type[EnergyFilter] = OnePassFilter
     __slots__ = (
-        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_measured",
-        "_misses", "_noise", "_on_rail", "_patience", "_push", "_push_variance", "_raw_scale", "_rest", "_rows",
-        "_scale_variance", "_settings", "_settled", "_static_age", "_static_seen", "_static_variance", "_steady_from",
-        "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age",
-        "_total_seen", "_total_variance", "_turning", "_u", "_w", "_waiting", "_wind", "energy", "flying", "news",
-        "static_watch", "time", "watch",
+        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_lift",
+        "_measured", "_misses", "_noise", "_on_rail", "_patience", "_push", "_push_variance", "_raw_scale", "_rest",
+        "_rows", "_scale_variance", "_settings", "_settled", "_static_age", "_static_seen", "_static_variance",
+        "_steady_from", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share",
+        "_total_age", "_total_seen", "_total_variance", "_turning", "_u", "_w", "_waiting", "_wind", "energy",
+        "flying", "news", "static_watch", "time", "watch",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -179,6 +179,7 @@ class AidedFilter:
         walk = self._noise.walk
         self.watch = TotalWatch(self._settings.aided, self._total_variance, walk, usual[0])
         self.static_watch = StaticWatch(self._static_variance, walk, usual[1])
+        self._lift = GRAVITY
         self._static_seen: tuple[float, float, float] | None = None  # Pa, its instant, s, mean of −f_z since, m/s²
         self._total_seen: tuple[float, float] | None = None  # tared, Pa, and NIS
 
@@ -375,7 +376,7 @@ class AidedFilter:
         return nis
 
     def _flag_static(self, kind: str) -> None:
-        self.static_watch.flag(kind, self.energy, self._density, self.watch.port.frozen.bias)
+        self.static_watch.flag(kind, self.energy, self._density, self.watch.port.frozen.lost)
         self._misses = 0
         self.watch.port.restart()
         self.news.append((self._t, "airspeed_fault", "static", kind))
@@ -410,6 +411,8 @@ class AidedFilter:
         if self._static_seen is not None:
             reading, at, lift = self._static_seen
             self._static_seen = None
+            if lift == lift:
+                self._lift = lift
             kind = self.static_watch.take(at, reading, lift, self._density)
             if kind or self._misses >= PERSISTENT:
                 self._flag_static(kind or "jump")
@@ -418,15 +421,15 @@ class AidedFilter:
             self._total_seen = None
             if self.static_watch.faulty:
                 return
-            kind = self.watch.take(self.energy, self.time, self._u, tared, nis, self._density, self._gust)
+            kind = self.watch.take(self.energy, self.time, self._u, self._lift, tared, nis, self._density, self._gust)
             if kind:
                 self._flag_total(kind)
 
     def _flag_total(self, kind: str) -> None:
         """Blame the port for what its readings show, or the other: without it the total pressure does not fit."""
-        if kind in ("unfit", "drift") and self.static_watch.suspect:
+        if kind != "stuck" and self.static_watch.suspect:
             self._flag_static("frozen")
-        elif kind != "unfit":
+        elif kind != "unfit" and not self.static_watch.repeating:
             self.watch.flag(kind, self.energy, self._density, self._gust)
             self.news.append((self._t, "airspeed_fault", "total", kind))
 

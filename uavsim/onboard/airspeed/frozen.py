@@ -3,11 +3,14 @@
 HEALTHY. Energy rate (`energy`) without the climb: V V̇ = V (f_x − b) + ṗ/ρ, so that the total pressure p_t = p + ρV²/2
 obeys
 
-    ṗ_t = 2 ṗ + ρ V (f_x − b) + ρ V · gust
+    ṗ_t = 2 ṗ + ρ V (f_x − b − c x) + ρ V · gust,        x = n²/V²
 
-A filter of two states, P of p_t and the bias b, predicts each reading by the filter's own static pressure p and the
-integral of f_x. Its b wanders far less than that of the aided filter, which has to follow launches and pulls: a port
-that freezes in a climb is to have no acceleration that is not there to hide behind.
+Lift takes an angle of attack, which turns f_x from the path: with n = −f_z, m n = ½ρV²S C_Lα (α − α₀), it is n α more
+than the acceleration along it, so n²/V² times c = 2m/(ρ S C_Lα), some metres, different for each aircraft (Etkin 1972,
+5.1). A filter of three states, P of p_t, the bias b and c, predicts each reading by the filter's own static pressure p
+and the integral of f_x. Its b hardly wanders, while that of the aided filter has to follow launches and pulls: a port
+that freezes is to have no acceleration that is not there to hide behind. Nor does c give it one: of a port that is shut
+V is a constant.
 
 FROZEN. The pressure in the tube is a constant; the reading is that and noise. The constant is the healthy model's P,
 with its variance, at the last instant at which the healthy model was the better one.
@@ -22,7 +25,8 @@ may be still, so the filter's floor does not count as evidence: there STILL take
 
 from math import log
 
-BIAS_SD = 0.5  # m/s², the part's bias and the angle of attack
+BIAS_SD = 0.5  # m/s², the part's bias and α₀
+TURN, TURN_SD = 5.0, 5.0  # m, c: 160 N/m² of wing loading at a lift slope of 5.3; none to 300 N/m²
 STILL = 0.06  # m/s, turbulence that is expected at the least where none is declared
 LEAST, MOST = -4.0, 2.0  # nats, what one reading may say for the frozen port
 TURNED = 5.0  # times as fast as in still air b wanders in declared turbulence, whose vertical gusts turn f_x
@@ -50,27 +54,37 @@ class FrozenTest:
         The constant that the frozen model believes in, Pa.
     misfit, count : float, int
         Σ (e²/σ² − 1) of the frozen model since it began, and of how many readings: 0 ± √(2n) if it is true.
-    pressure, bias : float
-        P less twice the static pressure, Pa, and b, m/s², of the healthy model.
-    pp, pb, bb : float
-        Their covariance.
+    pressure : float
+        P less twice the static pressure, Pa, of the healthy model.
+    lost, lost_variance : float
+        b + c x at the last reading, what f_x then was off by, m/s², and its variance.
     """
 
     __slots__ = (
-        "_bias_density", "_declared", "_noise", "bb", "bias", "count", "evidence", "held", "held_variance", "misfit",
-        "pb", "pp", "pressure",
+        "_b", "_bb", "_bc", "_bias_density", "_c", "_cc", "_declared", "_noise", "_pb", "_pc", "_pp", "count",
+        "evidence", "held", "held_variance", "lost", "lost_variance", "misfit", "pressure",
     )  # fmt: skip
 
     def __init__(self, variance: float, bias_rate: float, declared: bool) -> None:
         self._noise, self._declared = variance, declared
         self._bias_density = (TURNED * bias_rate if declared else bias_rate) ** 2
-        self.evidence = self.bias = self.pb = self.misfit = 0.0
+        self.evidence = self.misfit = self.pressure = self.held = 0.0
         self.count = 0
-        self.pressure = self.held = 0.0
-        self.pp, self.bb, self.held_variance = 1e12, BIAS_SD * BIAS_SD, 1e12
+        self._b, self._c, self.lost = 0.0, TURN, 0.0
+        self._pp, self._bb, self._cc = 1e12, BIAS_SD * BIAS_SD, TURN_SD * TURN_SD
+        self._pb = self._pc = self._bc = 0.0
+        self.held_variance, self.lost_variance = 1e12, BIAS_SD * BIAS_SD
 
     def add(
-        self, reading: float, static: float, static_variance: float, gained: float, dt: float, slope: float, gust: float
+        self,
+        reading: float,
+        static: float,
+        static_variance: float,
+        gained: float,
+        dt: float,
+        slope: float,
+        gust: float,
+        turn: float,
     ) -> float:
         """Take a reading; return the evidence.
 
@@ -86,12 +100,16 @@ class FrozenTest:
             ρ V, Pa/(m/s).
         gust : float
             Variance that the gust adds to the airspeed in that time, m²/s².
+        turn : float
+            x = n²/V², 1/m·m/s².
         """
-        noise, bb = self._noise, self.bb
+        noise, bb, bc, cc, pb, pc = self._noise, self._bb, self._bc, self._cc, self._pb, self._pc
         reach = slope * dt
-        self.pressure += slope * gained - reach * self.bias
-        pb = self.pb - reach * bb
-        pp = self.pp - reach * (self.pb + pb) + slope * slope * gust
+        turned = reach * turn
+        self.pressure += slope * gained - reach * self._b - turned * self._c
+        new_pb, new_pc = pb - reach * bb - turned * bc, pc - reach * bc - turned * cc
+        pp = self._pp - reach * (pb + new_pb) - turned * (pc + new_pc) + slope * slope * gust
+        pb, pc = new_pb, new_pc
         bb += self._bias_density * dt
         spread = pp + noise + 4.0 * static_variance
         innovation = reading - 2.0 * static - self.pressure
@@ -107,12 +125,16 @@ class FrozenTest:
             said = LEAST
         evidence = self.evidence + said
         if not evidence > 0.0 and nis > SURPRISE:
-            pp, pb = pp + innovation * innovation, 0.0
+            pp, pb, pc = pp + innovation * innovation, 0.0, 0.0
             spread += innovation * innovation
-        kp, kb = pp / spread, pb / spread
+        kp, kb, kc = pp / spread, pb / spread, pc / spread
         self.pressure += kp * innovation
-        self.bias += kb * innovation
-        self.pp, self.pb, self.bb = pp - kp * pp, pb - kp * pb, bb - kb * pb
+        self._b += kb * innovation
+        self._c += kc * innovation
+        self._pp, self._pb, self._pc = pp - kp * pp, pb - kp * pb, pc - kp * pc
+        self._bb, self._bc, self._cc = bb - kb * pb, bc - kb * pc, cc - kc * pc
+        self.lost = self._b + self._c * turn
+        self.lost_variance = self._bb + turn * (2.0 * self._bc + turn * self._cc)
         if evidence > 0.0:
             gain = self.held_variance / steady
             self.held += gain * still
@@ -121,7 +143,7 @@ class FrozenTest:
             self.misfit += still * still / steady - 1.0
             self.count += 1
         else:
-            self.held, self.held_variance = self.pressure + 2.0 * static, self.pp
+            self.held, self.held_variance = self.pressure + 2.0 * static, self._pp
             self.evidence = self.misfit = 0.0
             self.count = 0
         return self.evidence

@@ -21,7 +21,7 @@ from math import sqrt
 from uavsim.onboard.airspeed.frozen import FrozenTest
 from uavsim.onboard.airspeed.readmission import Readmission
 
-FROZEN, CALM = 26.0, 22.0  # nats, in declared gusts and without; in healthy flights below 14 and 16
+FROZEN, CALM = 24.0, 20.0  # nats, in declared gusts and without; in healthy flights below 14
 UNFIT = 4.0  # standard deviations by which a constant fits worse than noise allows: it is no constant
 CERTAIN = 3.0  # times that, from which on it does not matter
 DRIFT, LEVEL = 0.5, 120.0  # κ, h: standard deviations

@@ -14,6 +14,7 @@ ALIVE, STIRRED = 2.0, 25.0  # squared standard deviations a reading that noise i
 AGREE = 9.0  # squared standard deviations within which a port agrees with the coasting filter
 SAME, TIMES = 25, 4  # readings of one value; noise at half a step's standard deviation repeats one time in three; and
 # so many times the longest row on the rail, where a sensor of coarser steps has shown what it does
+FEW = 5  # of so many parts of that row the first is a beginning
 RETURN, SOON = 1.0, 10.0  # s: how long it must; how soon after a return a flag doubles that
 LONGEST = 60.0  # s
 
@@ -65,6 +66,11 @@ class Readmission:
         self._wait = min(2.0 * self._wait, LONGEST) if t - self._returned < SOON else RETURN
         self.faulty, self._agreed, self._stirred, self._heard = True, inf, 0.0, t
         self._trapped, self._held, self._held_variance = held_variance < inf, held, held_variance
+
+    @property
+    def repeating(self) -> bool:
+        """Whether the last readings may be the beginning of a row that is too long."""
+        return FEW * self.same >= self._most
 
     def repeats(self, reading: float) -> bool:
         """Whether a sensor that has noise says the same number for too long."""

@@ -54,7 +54,7 @@ class AidedSettings:
     slope_time: Annotated[float, Interval(gt=0.1, le=1000.0)] = 5.0
     bias_sd: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.3
     bias_time: Annotated[float, Interval(gt=0.01, le=1000.0)] = 5.0
-    bias_rate: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.005
+    bias_rate: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.002
     static_walk: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.3
     on_rail: Annotated[float, Interval(gt=0.0, le=500.0)] = 20.0
     unfolding_time: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.35

@@ -6,12 +6,14 @@ pressure's, V is carried on from there by energy rate alone,
 
     V = V₀ + ∫ f_x dt − b T + (p − p₀)/(ρ V₀),        σ_V² = σ₀² + (σ_b T)² + gust · T + (σ_p/ρV₀)² + u²
 
-with T the time since, b and σ_b those of the slower filter of `frozen`, and u what a port may have been off by before.
-If it was the static port, p is carried on with the climb c₀ of then, p = p_held − ρ g c₀ T, and V is corrected for it;
-the total pressure is taken on, and tells the climb by p_t and f_x.
+with T the time since, b and σ_b what f_x is off by and how well the filter of `frozen` knows it, and u what a port may
+have been off by before. A port that drifts is left 2 s before its flag, one that leaks (`wandering`) where for 2 s no
+more than a gust had been between V and the force. If it was the static port, p is carried on with the climb c₀ of then,
+p = p_held − ρ g c₀ T, and V is corrected for it; the total pressure is taken on, and tells the climb by p_t and f_x.
 
 A static pressure that stands still in a climb makes the total pressure wrong, too: energy rate expects it to rise. Then
-the total pressure is no constant, and the static pressure is: that one is to blame.
+the total pressure is no constant, and the static pressure is: that one is to blame. Which of the two tests is first is
+chance; the static pressure's goes by f_z alone and says nothing of a total pressure that is wrong, so it has the word.
 """
 
 from math import exp, inf
@@ -22,15 +24,19 @@ from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
+from uavsim.onboard.airspeed.wandering import WanderingTest
 
 Kept = tuple[float, float, float, float, float, float, float]
 """When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
-PACE, KEPT = 0.5, 4  # s between what is kept of V, and how many of them: a port that drifts is left 2 s before its flag
+NOTHING: Kept = (-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+PACE, KEPT = 0.5, 5  # s between what is kept of V, and how many of them: a port that drifts is left 2 s before its flag
 GAP = 0.1  # s without a pressure, after which its tests begin anew
 UNSEEN = 0.5  # m/s, what a port may have been off by before the tests began to doubt it
-SHUT, SUSPECT = 14.0, 4.0  # nats, by which the static port is flagged, and if the total pressure does not fit
+AGREE_SD = 5.0 / 3.0  # m/s; a port that drifted or leaked agrees within three of it, however little coasting knows
+SHUT, SUSPECT = 14.0, 7.0  # nats, by which the static port is flagged, and if the total pressure seems to be wrong
 CLIMB_SD = 0.5  # m/s, of the climb by which a shut static port is left
 BIAS_SD = 0.1  # m/s², of the slow b
+SLOWEST = 10.0  # m/s, below which no wing flies
 
 
 def _part(energy: EnergyFilter) -> None:
@@ -58,8 +64,8 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_jumped", "_jumped_at", "_p", "_still", "_t",
-        "_t0", "_u", "_u0", "_v", "_vv", "faulty", "port",
+        "_astray", "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_jumped", "_jumped_at", "_last",
+        "_near", "_p", "_sound", "_still", "_t", "_t0", "_u", "_u0", "_v", "_vv", "_wandering", "faulty", "port",
     )  # fmt: skip
 
     def __init__(self, aided: AidedSettings, variance: float, walk: float, usual: int = 0) -> None:
@@ -67,14 +73,24 @@ class TotalWatch:
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
+        self._wandering = WanderingTest(aided.gust_sd, aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance, walk, usual, self._declared)
-        self.faulty = False
+        self.faulty = self._astray = False
         self._t = self._t0 = -inf
-        self._before: tuple[Kept, ...] = ((-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),)
-        self._u = self._u0 = self._v = self._vv = self._p = self._bias = self._bb = 0.0
+        self._before: tuple[Kept, ...] = (NOTHING,)
+        self._sound, self._near = NOTHING, 0
+        self._u = self._u0 = self._v = self._vv = self._p = self._bias = self._bb = self._last = 0.0
 
     def take(
-        self, energy: EnergyFilter, t: float, gained: float, reading: float, nis: float, density: float, gust: float
+        self,
+        energy: EnergyFilter,
+        t: float,
+        gained: float,
+        lift: float,
+        reading: float,
+        nis: float,
+        density: float,
+        gust: float,
     ) -> str:
         """Take a reading that the filter has taken; return what seems to be wrong, as `PortMonitor.add`.
 
@@ -82,8 +98,8 @@ class TotalWatch:
         ----------
         energy : EnergyFilter
             At `t`, the reading's instant, s.
-        gained : float
-            ∫ f_x dt up to there, m/s.
+        gained, lift : float
+            ∫ f_x dt up to there, m/s, and −f_z, m/s².
         reading : float
             Tared, Pa.
         nis : float
@@ -95,15 +111,28 @@ class TotalWatch:
         if dt > GAP:
             port.restart()
             dt, self._u, self._t0 = 0.0, gained, -inf
-            self._before = ((-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),)
+            self._before, self._sound, self._last = (NOTHING,), NOTHING, v
+            self._near = 0
+            self._wandering.forget()
         test = port.frozen
         reach = (gust if self._declared else self._still) * v * dt
         if t - self._before[-1][0] > PACE:
-            self._before = (*self._before[-KEPT:], (t, gained, v, energy.vv, energy.p, test.bias, test.bb))
-        if test.add(reading, energy.p, energy.pp, gained - self._u, dt, density * v, reach) == 0.0 or self._t0 == -inf:
+            now = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
+            self._before = (*self._before[1 - KEPT :], now)
+            self._near = self._near + 1 if self._wandering.near else 0
+            if self._near >= KEPT:
+                self._sound = self._before[0]
+        change, turn = gained - self._u, lift * lift / (v * v if v > SLOWEST else SLOWEST * SLOWEST)
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, reach, turn) == 0.0
+        if healthy or self._t0 == -inf:
             self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
-            self._bias, self._bb = test.bias, test.bb
+            self._bias, self._bb = test.lost, test.lost_variance
         self._t, self._u = t, gained
+        lost = self._sound[5] if self._sound[0] > -inf else test.lost  # which no leak has taught
+        away = self._wandering.add(v, v - self._last, change - (lost + energy.s) * dt, dt)
+        self._last = v
+        if away:
+            return "leak"
         return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
     def jump(self, t: float, variance: float) -> None:
@@ -119,14 +148,16 @@ class TotalWatch:
     def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
         """Flag the port, and put the filter to where it would be without what it took since."""
         test = self.port.frozen
-        if kind != "frozen" and self._before[0][0] > -inf:  # it has been drifting for a while: to before that
-            self._t0, self._u0, self._v, self._vv, self._p, self._bias, self._bb = self._before[0]
+        if kind != "frozen":  # it has been wrong for a while: to before that
+            before = self._sound if kind == "leak" else self._before[0]
+            if before[0] > -inf:
+                self._t0, self._u0, self._v, self._vv, self._p, self._bias, self._bb = before
         since, slope = self._t - self._t0, density * self._v
         if kind == "frozen":
             self.port.back.flag(self._t, test.held, test.held_variance)
         else:
             self.port.back.flag(self._t)
-        self.faulty = True
+        self.faulty, self._astray = True, kind in ("drift", "leak")
         energy.v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
         bb = min(self._bb, self._bias_sd * self._bias_sd)
         energy.vv = self._vv + gust * self._v * since + bb * since * since + UNSEEN * UNSEEN
@@ -151,6 +182,8 @@ class TotalWatch:
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
+        if self._astray:
+            spread = min(spread, AGREE_SD * AGREE_SD)
         if not self.port.back.hear(t, reading, pressure, difference, spread):
             return False
         self.faulty = False
@@ -186,6 +219,11 @@ class StaticWatch:
     def suspect(self) -> bool:
         """Whether it is to blame for a total pressure that does not fit."""
         return self._test.evidence > SUSPECT
+
+    @property
+    def repeating(self) -> bool:
+        """Whether its readings are perhaps stuck: too early to blame anybody."""
+        return self._back.repeating
 
     def take(self, t: float, reading: float, lift: float, density: float) -> str:
         """Take a reading; return what is wrong with the port, "frozen" or "stuck"; "" for nothing.
