@@ -176,6 +176,34 @@ def test_a_shut_port_in_level_still_air_cannot_be_seen():
     assert evidence(gust=0.0, shut=1000).max() < CALM_LEVEL
 
 
+TURN = 7.0  # m, c of an aircraft
+
+
+@pytest.mark.parametrize(("slower", "bias"), [(26.0, 0.2), (38.0, -0.1)])
+def test_an_angle_of_attack_is_no_shut_port(slower, bias):
+    """From 32 m/s to another airspeed in 4 s, level: lift turns f_x by c g²/V², some 0.3 m/s². 10 records.
+
+    A test without it has the evidence of a shut port, 20 nats and more.
+    """
+    generator = np.random.default_rng(8)
+    for _ in range(10):
+        blind, knowing = (FrozenTest(NOISE**2, 0.002, False) for _ in range(2))
+        found = []
+        for k in range(3000):
+            t = k * DT
+            speed = 32.0 + (slower - 32.0) * np.clip((t - 12.0) / 4.0, 0.0, 1.0)
+            later = 32.0 + (slower - 32.0) * np.clip((t + DT - 12.0) / 4.0, 0.0, 1.0)
+            turn = GRAVITY**2 / speed**2
+            read = 0.5 * 1.2 * later**2 + NOISE * generator.standard_normal()
+            gained = later - speed + (bias + TURN * turn) * DT
+            row = read, 0.0, 0.0, gained, DT, 1.2 * speed, 1e-5
+            found.append((knowing.add(*row, turn), blind.add(*row, GRAVITY**2 / 32.0**2)))
+        highest = np.max(found, axis=0)
+        assert highest[0] < 12.0
+        assert highest[1] > CALM_LEVEL
+    assert knowing.lost == pytest.approx(bias + TURN * GRAVITY**2 / slower**2, abs=0.05)
+
+
 def climbing(climb, *, pull=0.0, shut=None, readings=1500, seed=3, noise=2.7):
     """W of a static pressure in a climb, m/s, that a pull, m/s², ends at reading 1000 for as long as it takes."""
     generator = np.random.default_rng(seed)

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from uavsim.cosim import draw
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.studies import batch
 from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch, fly_seeds
+from uavsim.studies.batch_bound import STRETCHES, against_bound, least_error
 
 SHORT = load_scenario("catapult", overrides=["duration=6"])
 SEEDS = [4, 2, 9]
@@ -194,3 +196,35 @@ def test_courses_are_kept_for_the_bound_and_only_of_the_aided_estimator(alone: B
     assert all(trace.course is not None for trace in alone.traces)
     paper = load_scenario("catapult", overrides=["duration=6", "estimator.kind=paper"])
     assert fly_seeds(paper, [3], workers=1).traces[0].course is None
+
+
+def test_flights_are_put_against_the_bound(alone: Batch) -> None:
+    """Both errors are root mean squares over the same bins; a filter near the bound is within half and twice of it."""
+    least = least_error(alone)
+    assert least is not None
+    time, allowed = least
+    found = against_bound(alone)
+    assert set(found) <= set(STRETCHES)
+    for name, (start, end) in STRETCHES.items():
+        part = (time >= start) & (time < end)
+        if name not in found:
+            assert not part.any()
+            continue
+        columns = np.round((time[part] - ERROR_START) / ERROR_STEP - 0.5).astype(int)
+        pairs = [
+            (trace.filtered[column] ** 2, limit**2)
+            for trace in alone.traces
+            for column, limit in zip(columns, allowed[part], strict=True)
+            if column < trace.filtered.size and np.isfinite(trace.filtered[column])
+        ]
+        rmse, limit = np.sqrt(np.mean(pairs, axis=0))
+        assert (found[name].rmse, found[name].bound) == (pytest.approx(rmse), pytest.approx(limit))
+        assert found[name].ratio == pytest.approx(rmse / limit)
+        assert 0.5 < found[name].ratio < 2.0
+
+
+def test_there_is_no_bound_of_one_flight_or_of_another_estimator(alone: Batch) -> None:
+    assert against_bound(replace(alone, traces=alone.traces[:1])) == {}
+    assert against_bound(replace(alone, kept={})) == {}
+    paper = load_scenario("catapult", overrides=["duration=5", "estimator.kind=paper"])
+    assert against_bound(fly_seeds(paper, [3, 4], workers=1)) == {}

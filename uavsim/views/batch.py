@@ -7,6 +7,7 @@ error over time, outcomes and reductions. It is written under another name and r
 
 import platform
 from collections.abc import Iterator
+from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,8 +17,8 @@ from numpy.typing import NDArray
 
 from uavsim.consistency import mean_band
 from uavsim.flight import claim, unfinished, write_json
-from uavsim.studies.airspeed_flights import bound, together
 from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch
+from uavsim.studies.batch_bound import FEWEST, against_bound, least_error
 from uavsim.studies.quantiles import ecdf_band, quantile_band
 from uavsim.views.figure import (
     BLACK,
@@ -47,7 +48,6 @@ Array = NDArray[np.float64]
 PACKAGES = ("uavsim", "jsbsim", "numpy", "scipy", "filterpy", "pandas", "pyarrow")
 FEATURES = ("avx", "fma", "sse4", "asimd", "sve")  # of the processor, that floating point may depend on
 QUANTILES = (0.05, 0.50, 0.95)
-FEWEST = 2  # flights, from which on something is averaged
 ENLARGED = 2.0  # s after the true launch to which the error is enlarged
 DRAWN = 8  # flights with plots of their own; `uavsim replay` draws any other
 GOLDEN = 0.6180339887498949  # spreads points evenly without a random draw
@@ -81,7 +81,10 @@ def save(flown: Batch, target: Path, *, overwrite: bool, plots: bool) -> None:
 
 
 def campaign(flown: Batch) -> dict[str, Any]:
-    """Describe what was flown, with which software and on which processor; `wall_time` in s."""
+    """Describe what was flown, with which software and on which processor, and how near it came to the bound.
+
+    `wall_time` in s; `airspeed_bound` as `studies.batch_bound.against_bound` has it.
+    """
     return {
         "scenario": flown.scenario.to_dict(),
         "root_seed": flown.scenario.seed,
@@ -94,6 +97,7 @@ def campaign(flown: Batch) -> dict[str, Any]:
             "features": processor_features(Path("/proc/cpuinfo")),
         },
         "wall_time": flown.wall_time,
+        "airspeed_bound": {name: asdict(found) for name, found in against_bound(flown).items()},
     }
 
 
@@ -299,7 +303,7 @@ def _consistency(flown: Batch) -> "Figure | None":
     there = (counts >= FEWEST) & (time > ERROR_START + ERROR_STEP)
     if not there.any():
         return None
-    least = _bound(flown)
+    least = least_error(flown)
     columns = (1.5, 1.0) if time[-1] > 2.0 * ENLARGED else (1.0,)
     figure, axes = sheet(
         _title(flown), _consistency_words(nees[:, there], least), (1.2, 1.0), columns, size=(11.5, 6.5)
@@ -338,19 +342,6 @@ def _consistency_words(nees: Array, least: "tuple[Array, Array] | None") -> str:
         f"(error/sd claimed)² over the flights: mean {means.mean():.2f}, in its band at {100 * inside:.0f} % of times"
     )
     return words + ("" if least is None else "; below: against the least that the readings allow")
-
-
-def _bound(flown: Batch) -> "tuple[Array, Array] | None":
-    """Times and least standard deviation, if there are enough courses and a flight whose schedule can be taken."""
-    courses = [trace.course for trace in flown.traces if trace.course is not None]
-    flight = next(iter(flown.kept.values()), None)
-    if len(courses) < FEWEST or flight is None or flight.score["launch"]["detected_time"] is None:
-        return None
-    t, sd = bound(flight, together(courses))
-    bins = np.floor((t - ERROR_START) / ERROR_STEP).astype(int)
-    middles = ERROR_START + ERROR_STEP * (np.arange(bins[0], bins[-1] + 1) + 0.5)
-    means = np.sqrt(np.bincount(bins - bins[0], sd**2) / np.maximum(np.bincount(bins - bins[0]), 1))
-    return middles, means
 
 
 # -- outcomes --------------------------------------------------------------------------------------------------------

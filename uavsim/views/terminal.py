@@ -173,6 +173,8 @@ def _wanted(low: float | None, high: float | None) -> str:
 
 def print_batch(flown: "Batch") -> None:
     """Print what several flights gave: outcomes, quantiles of latency and error, what was not as it should be."""
+    from uavsim.studies.batch_bound import against_bound
+
     console, runs = _console(), flown.runs
     summary = ", ".join(f"{count} {name}" for name, count in runs["outcome"].value_counts().items())
     false = int(runs["launch.false_detections"].sum())
@@ -181,6 +183,9 @@ def print_batch(flown: "Batch") -> None:
     table = _quantile_table(flown)
     if table.row_count:
         _print(console, table, "")
+    for name, found in against_bound(flown).items():
+        when = "from 0.1 to 2 s after launch" if name == "first_2_s" else "later"
+        _print(console, f"RMSE over √PCRB {when}: {found.rmse:.3f} / {found.bound:.3f} m/s = {found.ratio:.2f}")
     _print(console, f"False detections before release: {false}", f"Flights with a requirement that is not met: {unmet}")
 
 

@@ -32,6 +32,8 @@ NOTHING: Kept = (-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 PACE, KEPT = 0.5, 5  # s between what is kept of V, and how many of them: a port that drifts is left 2 s before its flag
 GAP = 0.1  # s without a pressure, after which its tests begin anew
 UNSEEN = 0.5  # m/s, what a port may have been off by before the tests began to doubt it
+SLOW, LEARNT = 10.0, 5.0  # s, over which what f_x is off by is averaged while gusts allow, and at first in any case
+LOST_SD = 0.2  # m/s², of that mean
 AGREE_SD = 5.0 / 3.0  # m/s; a port that drifted or leaked agrees within three of it, however little coasting knows
 SHUT, SUSPECT = 14.0, 7.0  # nats, by which the static port is flagged, and if the total pressure seems to be wrong
 CLIMB_SD = 0.5  # m/s, of the climb by which a shut static port is left
@@ -65,7 +67,8 @@ class TotalWatch:
 
     __slots__ = (
         "_astray", "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_jumped", "_jumped_at", "_last",
-        "_near", "_p", "_sound", "_still", "_t", "_t0", "_u", "_u0", "_v", "_vv", "_wandering", "faulty", "port",
+        "_lost", "_near", "_p", "_sound", "_still", "_t", "_t0", "_taught", "_u", "_u0", "_v", "_vv", "_wandering",
+        "faulty", "port",
     )  # fmt: skip
 
     def __init__(self, aided: AidedSettings, variance: float, walk: float, usual: int = 0) -> None:
@@ -78,8 +81,8 @@ class TotalWatch:
         self.faulty = self._astray = False
         self._t = self._t0 = -inf
         self._before: tuple[Kept, ...] = (NOTHING,)
-        self._sound, self._near = NOTHING, 0
-        self._u = self._u0 = self._v = self._vv = self._p = self._bias = self._bb = self._last = 0.0
+        self._sound, self._near, self._taught = NOTHING, 0, 0.0
+        self._u = self._u0 = self._v = self._vv = self._p = self._bias = self._bb = self._last = self._lost = 0.0
 
     def take(
         self,
@@ -112,7 +115,7 @@ class TotalWatch:
             port.restart()
             dt, self._u, self._t0 = 0.0, gained, -inf
             self._before, self._sound, self._last = (NOTHING,), NOTHING, v
-            self._near = 0
+            self._near, self._taught = 0, 0.0
             self._wandering.forget()
         test = port.frozen
         reach = (gust if self._declared else self._still) * v * dt
@@ -121,19 +124,26 @@ class TotalWatch:
             self._before = (*self._before[1 - KEPT :], now)
             self._near = self._near + 1 if self._wandering.near else 0
             if self._near >= KEPT:
-                self._sound = self._before[0]
+                self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > SLOWEST else SLOWEST * SLOWEST)
         healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, reach, turn) == 0.0
         if healthy or self._t0 == -inf:
             self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
             self._bias, self._bb = test.lost, test.lost_variance
         self._t, self._u = t, gained
-        lost = self._sound[5] if self._sound[0] > -inf else test.lost  # which no leak has taught
-        away = self._wandering.add(v, v - self._last, change - (lost + energy.s) * dt, dt)
-        self._last = v
-        if away:
+        if self._wanders(v, change - energy.s * dt, test.lost, dt):
             return "leak"
         return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
+
+    def _wanders(self, v: float, gained: float, lost: float, dt: float) -> bool:
+        """Whether V has left what the force gave; what f_x is off by is learnt slowly, and not from a leak."""
+        wandering = self._wandering
+        if dt > 0.0 and (wandering.near or self._taught < LEARNT):
+            self._taught += dt
+            self._lost += (lost - self._lost) * dt / (self._taught if self._taught < SLOW else SLOW)
+        away = wandering.add(v, v - self._last, gained - self._lost * dt, dt)
+        self._last = v
+        return away
 
     def jump(self, t: float, variance: float) -> None:
         """Be told by how much the push has widened b at `t`, s: its variance, (m/s²)², which b forgets in its time."""
