@@ -13,11 +13,12 @@ import math
 from typing import Any
 
 from uavsim.airdata.constants import GAMMA, HALF_EXCESS, STANDARD_PRESSURE, STANDARD_TEMPERATURE
-from uavsim.airdata.pressures import impact_share, isentropic_mach, nan_at_rest
+from uavsim.airdata.pressures import impact_share, isentropic_mach, mach
 from uavsim.airdata.speeds import sound
 from uavsim.airdata.values import (
     Numbers,
     clip,
+    nan_up_to_zero,
     numbers,
     require_mach,
     require_pressure,
@@ -53,7 +54,7 @@ def calibrated_airspeed(*, total: Numbers, static: Numbers | float) -> Numbers:
     30.0
     """
     xp, (pt, ps) = numbers(total, static)
-    _require(pt, ps)
+    require_subsonic(pt, ps)
     speed: Numbers = _calibrated(clip(pt - ps), xp)
     return speed
 
@@ -77,8 +78,8 @@ def calibrated_airspeed_gradient(*, total: Numbers, static: Numbers | float) -> 
         As `calibrated_airspeed`.
     """
     xp, (pt, ps) = numbers(total, static)
-    _require(pt, ps)
-    difference = nan_at_rest(pt - ps, xp)
+    require_subsonic(pt, ps)
+    difference = nan_up_to_zero(pt - ps, xp)
     number = isentropic_mach(difference / STANDARD_PRESSURE, xp)
     slope = (
         STANDARD_SPEED_OF_SOUND
@@ -107,8 +108,7 @@ def equivalent_airspeed(*, total: Numbers, static: Numbers | float) -> Numbers:
         Pressure ≤ 0, or pressures of a Mach number above 1.
     """
     xp, (pt, ps) = numbers(total, static)
-    _require(pt, ps)
-    speed: Numbers = _equivalent(isentropic_mach(clip(pt - ps) / ps, xp), ps, xp)
+    speed: Numbers = _equivalent(mach(total=pt, static=ps), ps, xp)
     return speed
 
 
@@ -131,8 +131,8 @@ def equivalent_airspeed_gradient(*, total: Numbers, static: Numbers | float) -> 
         As `equivalent_airspeed`.
     """
     xp, (pt, ps) = numbers(total, static)
-    _require(pt, ps)
-    number = isentropic_mach(nan_at_rest(pt - ps, xp) / ps, xp)
+    require_subsonic(pt, ps)
+    number = isentropic_mach(nan_up_to_zero(pt - ps, xp) / ps, xp)
     speed = _equivalent(number, ps, xp)
     by_total = speed * (1.0 + HALF_EXCESS * number * number) / (GAMMA * number * number * pt)
     return by_total, -by_total * pt / ps + 0.5 * speed / ps
@@ -217,8 +217,7 @@ def calibrated_from_true(*, true: Numbers, static: Numbers | float, temperature:
         Pressure ≤ 0, temperature outside 150–400 K, airspeed below 0, or a Mach number above 1.
     """
     xp, (v, ps, t) = numbers(true, static, temperature)
-    m = _true_mach(v, ps, t, xp)
-    speed: Numbers = _calibrated(ps * impact_share(m, xp), xp)
+    speed: Numbers = calibrated_from_mach(mach=_true_mach(v, ps, t, xp), static=ps)
     return speed
 
 
@@ -276,7 +275,7 @@ def calibrated_from_equivalent(*, equivalent: Numbers, static: Numbers | float) 
         Pressure ≤ 0, airspeed below 0, or a Mach number above 1.
     """
     xp, (ve, ps) = numbers(equivalent, static)
-    speed: Numbers = _calibrated(ps * impact_share(_equivalent_mach(ve, ps, xp), xp), xp)
+    speed: Numbers = calibrated_from_mach(mach=_equivalent_mach(ve, ps, xp), static=ps)
     return speed
 
 
@@ -316,8 +315,3 @@ def _equivalent_mach(equivalent: Any, static: Any, xp: Any) -> Any:
     number = equivalent / (STANDARD_SPEED_OF_SOUND * xp.sqrt(static / STANDARD_PRESSURE))
     require_mach(number)
     return number
-
-
-def _require(total: Any, static: Any) -> None:
-    require_pressure(total, static)
-    require_subsonic(total, static)

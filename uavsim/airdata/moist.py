@@ -216,10 +216,8 @@ def vapour_fraction_at_dew_point(*, dew_point: Numbers, pressure: Numbers | floa
     ValueError
         Pressure ≤ 0, dew point outside 150–400 K.
     """
-    xp, (t, p) = numbers(dew_point, pressure)
-    require_pressure(p)
-    require_temperature(t)
-    fraction: Numbers = _enhancement(p, t) * _saturation(t, xp) / p
+    saturated: Any = 1.0
+    fraction: Numbers = vapour_fraction(relative_humidity=saturated, pressure=pressure, temperature=dew_point)
     return fraction
 
 
@@ -233,18 +231,20 @@ def moist_density(p: Any, t: Any, xv: Any, z: Any) -> Any:
 
 def virial_compressibility(p: Any, t: Any, xv: Any) -> Any:
     """Z of p Pa, T K and x_v, without checks."""
-    c = t - ZERO_CELSIUS
-    virial = _A0 + (_A1 + _A2 * c) * c + (_B0 + _B1 * c) * xv + (_C0 + _C1 * c) * xv * xv
-    return 1.0 - p / t * virial + (p / t) ** 2 * (_D + _E * xv * xv)
+    return 1.0 - p / t * _virial(t - ZERO_CELSIUS, xv) + (p / t) ** 2 * (_D + _E * xv * xv)
+
+
+def _virial(c: Any, xv: Any) -> Any:
+    """Return the bracket of A1.4, K/Pa, at c °C."""
+    return _A0 + (_A1 + _A2 * c) * c + (_B0 + _B1 * c) * xv + (_C0 + _C1 * c) * xv * xv
 
 
 def _compressibility_slopes(p: Any, t: Any, xv: Any) -> tuple[Any, Any, Any]:
     """Return ∂Z/∂p, ∂Z/∂T and ∂Z/∂x_v."""
     c, u = t - ZERO_CELSIUS, p / t
-    virial = _A0 + (_A1 + _A2 * c) * c + (_B0 + _B1 * c) * xv + (_C0 + _C1 * c) * xv * xv
     warming = _A1 + 2.0 * _A2 * c + _B1 * xv + _C1 * xv * xv
     wetting = _B0 + _B1 * c + 2.0 * (_C0 + _C1 * c) * xv
-    by_u = -virial + 2.0 * u * (_D + _E * xv * xv)
+    by_u = -_virial(c, xv) + 2.0 * u * (_D + _E * xv * xv)
     return by_u / t, -by_u * u / t - u * warming, -u * wetting + 2.0 * u * u * _E * xv
 
 

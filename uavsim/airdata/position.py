@@ -17,16 +17,16 @@ from typing import Any
 import numpy as np
 
 from uavsim.airdata.constants import GAMMA
-from uavsim.airdata.pressures import impact_share, isentropic_mach, mach_gradient
+from uavsim.airdata.pressures import dynamic_pressure, impact_share, isentropic_mach, mach, mach_gradient
 from uavsim.airdata.surfaces import Polynomial, Table
 from uavsim.airdata.values import (
     Numbers,
     anywhere,
     clip,
+    nan_up_to_zero,
     numbers,
     require_mach,
     require_pressure,
-    require_subsonic,
 )
 
 _STEPS = 60
@@ -76,10 +76,8 @@ class PositionError:
         ValueError
             Pressure ≤ 0, or pressures of a Mach number above 1.
         """
-        xp, (pt, ps, a, b) = numbers(total, static, alpha, beta)
-        require_pressure(pt, ps)
-        require_subsonic(pt, ps)
-        m = isentropic_mach(clip(pt - ps) / ps, xp)
+        _, (pt, ps, a, b) = numbers(total, static, alpha, beta)
+        m = mach(total=pt, static=ps)
         impact = pt - ps
         read_total = ps + impact * self.total(m, a, b)
         read_static = ps + impact * self.static(m, a, b)
@@ -115,7 +113,7 @@ class PositionError:
         for _ in range(_STEPS):
             cs, ct = self.static(m, a, b), self.total(m, a, b)
             impact = _over(pt - ps, ct - cs, xp)
-            true_static = _above_zero(ps - impact * cs, xp)
+            true_static = nan_up_to_zero(ps - impact * cs, xp)
             found = isentropic_mach(clip(impact) / true_static, xp)
             change, m = abs(found - m), found
             if not anywhere(change > _SETTLED):
@@ -145,9 +143,9 @@ class PositionError:
         ValueError
             As `read`.
         """
-        xp, (pt, ps, a, b) = numbers(total, static, alpha, beta)
+        _, (pt, ps, a, b) = numbers(total, static, alpha, beta)
+        m = mach(total=pt, static=ps)
         by_total, by_static = mach_gradient(total=pt, static=ps)
-        m = isentropic_mach(clip(pt - ps) / ps, xp)
         rows = []
         for surface in (self.total, self.static):
             share, slope = surface(m, a, b), (pt - ps) * surface.gradient(m, a, b)[0]
@@ -183,9 +181,8 @@ def pressure_coefficient(*, pressure: Numbers, static: Numbers | float, mach: Nu
     -0.313
     """
     xp, (p, ps, m) = numbers(pressure, static, mach)
-    require_pressure(p, ps)
-    require_mach(m)
-    coefficient: Numbers = _over(p - ps, 0.5 * GAMMA * ps * m * m, xp)
+    require_pressure(p)
+    coefficient: Numbers = _over(p - ps, dynamic_pressure(static=ps, mach=m), xp)
     return coefficient
 
 
@@ -222,10 +219,3 @@ def _over(numerator: Any, denominator: Any, xp: Any) -> Any:
     if xp is math:
         return math.nan if denominator == 0.0 else numerator / denominator
     return numerator / np.where(denominator == 0.0, math.nan, denominator)
-
-
-def _above_zero(pressure: Any, xp: Any) -> Any:
-    """Return a pressure above 0, NaN for the rest."""
-    if xp is math:
-        return pressure if pressure > 0.0 else math.nan
-    return np.where(pressure > 0.0, pressure, math.nan)

@@ -12,7 +12,15 @@ import math
 from typing import Any
 
 from uavsim.airdata.constants import EXPONENT, GAMMA, HALF_EXCESS
-from uavsim.airdata.values import Numbers, clip, numbers, require_mach, require_pressure, require_subsonic
+from uavsim.airdata.values import (
+    Numbers,
+    clip,
+    nan_up_to_zero,
+    numbers,
+    require_mach,
+    require_pressure,
+    require_subsonic,
+)
 
 
 def total_pressure(*, static: Numbers, mach: Numbers | float) -> Numbers:
@@ -187,7 +195,6 @@ def mach(*, total: Numbers, static: Numbers | float) -> Numbers:
     0.5
     """
     xp, (pt, ps) = numbers(total, static)
-    require_pressure(pt, ps)
     require_subsonic(pt, ps)
     number: Numbers = isentropic_mach(clip(pt - ps) / ps, xp)
     return number
@@ -214,9 +221,8 @@ def mach_gradient(*, total: Numbers, static: Numbers | float) -> tuple[Numbers, 
         As `mach`.
     """
     xp, (pt, ps) = numbers(total, static)
-    require_pressure(pt, ps)
     require_subsonic(pt, ps)
-    m = isentropic_mach(nan_at_rest(pt - ps, xp) / ps, xp)
+    m = isentropic_mach(nan_up_to_zero(pt - ps, xp) / ps, xp)
     slope = (1.0 + HALF_EXCESS * m * m) / (GAMMA * m * pt)
     return slope, -slope * pt / ps
 
@@ -238,10 +244,3 @@ def impact_share(mach: Any, xp: Any = math) -> Any:
 def isentropic_mach(share: Any, xp: Any = math) -> Any:
     """Mach number of q_c/p_s ≥ 0, without checks."""
     return xp.sqrt(xp.expm1(EXPONENT * xp.log1p(share)) / HALF_EXCESS)
-
-
-def nan_at_rest(difference: Any, xp: Any) -> Any:
-    """Return p_t − p_s where it is above 0, else NaN: where the root has no slope."""
-    if xp is math:
-        return difference if difference > 0.0 else math.nan
-    return xp.where(difference > 0.0, difference, math.nan)

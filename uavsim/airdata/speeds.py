@@ -29,11 +29,12 @@ from uavsim.airdata.constants import (
     VAPOUR_DEFICIT,
 )
 from uavsim.airdata.moist import virial_compressibility
-from uavsim.airdata.pressures import isentropic_mach, nan_at_rest
+from uavsim.airdata.pressures import isentropic_mach
 from uavsim.airdata.values import (
     Numbers,
     clip,
     nan_below_zero,
+    nan_up_to_zero,
     numbers,
     require_fraction,
     require_pressure,
@@ -184,7 +185,7 @@ def airspeed_gradient(
     xp, (pt, ps, t, xv) = numbers(total, static, temperature, vapour_fraction)
     _require(pt, ps, t, xv, model)
     light = calibration * _lightness(ps, t, xv, 1.0, xp)
-    speed = light * _SPEEDS[model](nan_at_rest(pt - ps, xp), ps, t, xp)
+    speed = light * _SPEEDS[model](nan_up_to_zero(pt - ps, xp), ps, t, xp)
     by_total = light * light * _SLOPES[model](pt, ps, t, xp) / (2.0 * speed)
     return by_total, -by_total * pt / ps, speed / (2.0 * t)
 
@@ -220,7 +221,7 @@ def airspeed_curvature(
     xp, (pt, ps, t, xv) = numbers(total, static, temperature, vapour_fraction)
     _require(pt, ps, t, xv, model)
     light = calibration * _lightness(ps, t, xv, 1.0, xp)
-    speed = light * _SPEEDS[model](nan_at_rest(pt - ps, xp), ps, t, xp)
+    speed = light * _SPEEDS[model](nan_up_to_zero(pt - ps, xp), ps, t, xp)
     square = light * light * _SLOPES[model](pt, ps, t, xp)  # ∂V²/∂p_t
     bend = (EXPONENT - 1.0) / pt * square if model == "compressible" else 0.0  # ∂²V²/∂p_t²
     curvature: Numbers = (bend - 0.5 * square * square / (speed * speed)) / (2.0 * speed)

@@ -37,6 +37,13 @@ def nan_below_zero(value: Any) -> Any:
     return np.where(value < 0.0, math.nan, value)
 
 
+def nan_up_to_zero(value: Any, xp: Any) -> Any:
+    """Return what is above 0, and NaN for the rest: a root has no slope at 0, and no air has that pressure."""
+    if xp is math:
+        return value if value > 0.0 else math.nan
+    return np.where(value > 0.0, value, math.nan)
+
+
 def anywhere(condition: Any) -> bool:
     """Tell whether a comparison holds anywhere."""
     return condition if isinstance(condition, bool) else bool(np.any(condition))
@@ -92,13 +99,14 @@ def require_mach(mach: Any) -> None:
 
 
 def require_subsonic(total: Any, static: Any) -> None:
-    """Refuse pressures of a Mach number above 1 (+ 1e-6).
+    """Refuse pressures that no air has, or of a Mach number above 1 (+ 1e-6).
 
     Raises
     ------
     ValueError
-        There a shock stands before the tube and the isentropic relation does not hold.
+        Pressure ≤ 0. Above Mach 1 a shock stands before the tube and the isentropic relation does not hold.
     """
+    require_pressure(total, static)
     if anywhere(total > LIMIT_RATIO * static):
         raise ValueError("the ratio of the pressures is that of a Mach number above 1")
 
