@@ -12,6 +12,19 @@ from uavsim.studies.kernels import Counts, Forces, Numbers, Reals, Wholes, compi
 
 
 @compiled
+def on_rail(
+    v: float, dt: float, before: float, last: float, summed: float, time: float, block: float, rounding: float
+) -> tuple[float, float, float, float]:
+    """Mean on the rail after one more force, as `RailMean.add`."""
+    if isfinite(v):
+        summed += v * dt
+        time += dt
+        if time * rounding >= block:
+            return last, summed / time, 0.0, 0.0
+    return before, last, summed, time
+
+
+@compiled
 def px4(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
     """`Px4`: p threshold, hold, interval, period, block, rounding; x mean on the rail, elapsed, held."""
     threshold, hold, interval, period, block, rounding = p
@@ -21,12 +34,7 @@ def px4(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Who
         v, t = np.float64(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
-        if isfinite(v):
-            summed += v * dt
-            time += dt
-            if time * rounding >= block:
-                before, last = last, summed / time
-                summed = time = 0.0
+        before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
         elapsed += dt
         if elapsed < interval:
             continue
@@ -96,12 +104,7 @@ def ardupilot(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, 
         v, t = np.float64(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
-        if isfinite(v):
-            summed += v * dt
-            time += dt
-            if time * rounding >= block:
-                before, last = last, summed / time
-                summed = time = 0.0
+        before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
         if waiting:
             waited += dt
             launched = waited >= delay
@@ -195,12 +198,7 @@ def altos(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: W
         v, t = np.float64(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
-        if isfinite(v):
-            summed += v * dt
-            time += dt
-            if time * rounding >= block:
-                before, last = last, summed / time
-                summed = time = 0.0
+        before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
         a = v - before
         if not isfinite(a):
             continue
