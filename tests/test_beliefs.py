@@ -94,3 +94,17 @@ def test_declared_turbulence_is_believed_and_none_changes_nothing() -> None:
     assert (
         believed_air(scenario("environment.turbulence_wind_20ft=7.5", "mismatch.gust=0")).aided == calm.estimator.aided
     )
+
+
+def test_a_warm_board_is_no_thermometer_of_the_air() -> None:
+    """What a die heats itself by nobody knows: it is believed as a deviation, beside offset and noise."""
+    plain, warm = believed_noise(scenario()), believed_noise(scenario("air_data.thermal.self_heating=4"))
+    assert warm.temperature_sd == pytest.approx(math.hypot(plain.temperature_sd, 4.0))
+
+
+def test_a_part_without_noise_rounds() -> None:
+    """step²/12: BMP390 x2, 1.32 Pa; a quieter part than that has no quieter readings."""
+    for scale, sd in ((0.0, 1.32 / math.sqrt(12.0)), (0.1, 1.32 / math.sqrt(12.0)), (1.0, None)):
+        noise = believed_noise(scenario("air_data.total.mode=x2/x1", f"air_data.total.noise_scale={scale}"))
+        full = believed_noise(scenario("air_data.total.mode=x2/x1"))
+        assert noise.total_sd == pytest.approx(full.total_sd if sd is None else sd, rel=1e-3)

@@ -1,7 +1,7 @@
 """Assumptions about sensors, flown: each setting does in the loop what its docstring says.
 
 Figures are those of mechanics and of gas dynamics; tolerances cover noise and what the filter lags behind. The
-published estimator flies: it takes what the pressures say, where the aided one would doubt sensors without any noise.
+published estimator flies: it takes what the pressures say, where the aided one weighs them against the force.
 """
 
 import math
@@ -251,3 +251,13 @@ def test_a_term_more_changes_no_draw_of_any_other(scenario: str) -> None:
             assert plain.tables[table][name].to_numpy().tobytes() == other.tables[table][name].to_numpy().tobytes(), (
                 name
             )
+
+
+@pytest.mark.parametrize(
+    "quiet", [IDEAL, IDEAL[8:10], (*IDEAL[8:10], "air_data.total.preset=ms5611", "air_data.static.preset=ms5611")]
+)
+def test_sensors_without_noise_are_no_fault(quiet: tuple[str, ...]) -> None:
+    """A sweep of the noise down to nothing flies: neither stillness nor steps of a part are taken for a shut port."""
+    flight = uavsim.fly("catapult", seed=1, overrides=["duration=22", *quiet])
+    assert [e for e in flight.events if e["event"] == "airspeed_fault"] == []
+    assert flight.score["airspeed"]["rmse"] < 0.1

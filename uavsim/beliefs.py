@@ -57,7 +57,8 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
     return NoiseModel(
         total_sd=belief.total_noise * total.noise_sd,
         static_sd=belief.static_noise * static.noise_sd,
-        temperature_sd=belief.temperature * hypot(static.temperature_noise_sd, static.temperature_offset_sd),
+        temperature_sd=belief.temperature
+        * hypot(static.temperature_noise_sd, static.temperature_offset_sd, air.thermal.self_heating),
         total_tuned_sd=total.noise_sd,
         static_tuned_sd=static.noise_sd,
         total_window=belief.lag * total.mode.conversion_time,

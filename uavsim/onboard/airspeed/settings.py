@@ -31,8 +31,8 @@ class AidedSettings:
     bias_time : float
         Correlation time of that in flight, s.
     bias_rate : float
-        How fast that wanders in steady flight and still air, (m/s²)/√s: what the watch over the ports goes by; in
-        declared turbulence five times as fast.
+        How fast that wanders in steady flight and still air, the angle of attack apart, (m/s²)/√s: what the watch over
+        the ports goes by; in declared turbulence five times as fast.
     static_walk : float
         What moves the static pressure beside the climb, Pa/√s.
     on_rail : float

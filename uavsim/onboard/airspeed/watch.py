@@ -33,12 +33,18 @@ PACE, KEPT = 0.5, 5  # s between what is kept of V, and how many of them: a port
 GAP = 0.1  # s without a pressure, after which its tests begin anew
 UNSEEN = 0.5  # m/s, what a port may have been off by before the tests began to doubt it
 SLOW, LEARNT = 10.0, 5.0  # s, over which what f_x is off by is averaged while gusts allow, and at first in any case
+FINE = 6  # equal readings in a row that chance makes while noise is at least half a step
 LOST_SD = 0.2  # m/s², of that mean
 AGREE_SD = 5.0 / 3.0  # m/s; a port that drifted or leaked agrees within three of it, however little coasting knows
 SHUT, SUSPECT = 14.0, 7.0  # nats, by which the static port is flagged, and if the total pressure seems to be wrong
 CLIMB_SD = 0.5  # m/s, of the climb by which a shut static port is left
 BIAS_SD = 0.1  # m/s², of the slow b
 SLOWEST = 10.0  # m/s, below which no wing flies
+
+
+def apart(usual: int) -> float:
+    """Return how many readings say as much as one: a sensor whose steps exceed its noise stays on one for a row."""
+    return max(1.0, usual / FINE)
 
 
 def _part(energy: EnergyFilter) -> None:
@@ -77,7 +83,7 @@ class TotalWatch:
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = WanderingTest(aided.gust_sd, aided.gust_length)
-        self.port = PortMonitor(aided.bias_rate, variance, walk, usual, self._declared)
+        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared)
         self.faulty = self._astray = False
         self._t = self._t0 = -inf
         self._before: tuple[Kept, ...] = (NOTHING,)
@@ -221,7 +227,7 @@ class StaticWatch:
     __slots__ = ("_back", "_t", "_test", "_variance", "faulty")
 
     def __init__(self, variance: float, walk: float, usual: int = 0) -> None:
-        self._variance = variance
+        self._variance = variance * apart(usual)
         self._back = Readmission(variance, walk, usual)
         self._test, self._t, self.faulty = ClimbTest(variance, 0.0), -inf, False
 
