@@ -1,6 +1,7 @@
 """`uavsim survey`: what it prints and writes, and one line for what cannot be."""
 
 import json
+import re
 import shutil
 
 import pytest
@@ -43,6 +44,11 @@ def test_survey_of_a_flight(monkeypatch, capsys, tmp_path, flight):
     assert (code, error) == (0, "")
     assert "total port: nose, tube" in printed
     assert "static port: nose, boom 1.5 diameters ahead" in printed
+    assert re.search(r"^ +[0-9]+ nose, tube .*% \*$", printed, re.MULTILINE)
+    assert re.search(r"^ +[0-9]+ nose, boom 1.5 diameters ahead .*% \*$", printed, re.MULTILINE)  # though not the first
+    table = printed[printed.index("total pressure") : printed.index("*: the port")]
+    assert max(map(len, table.splitlines())) <= 80
+    assert set(re.findall(r"% ([a-z])$", table, re.MULTILINE)) == set(re.findall(r"^([a-z]): ", table, re.MULTILINE))
     assert printed.rstrip().endswith(str(out))
     assert {path.name for path in out.iterdir()} == {
         "survey.json", "survey.csv", "position_error.toml", "position_error.csv",

@@ -1,5 +1,7 @@
 """Remarks of a report: each says what the flight's own figures show."""
 
+import dataclasses
+
 import pytest
 
 import uavsim
@@ -40,3 +42,37 @@ def test_a_fault_is_no_fault_of_the_filter():
     """Four seconds without readings of p_total spoil the RMSE; the BMP390's noise is worth a filter all the same."""
     found = notes(_fly('air_data.total.faults=[{kind="dropout",start=8,stop=12}]'))
     assert not any("cannot help" in n for n in found)
+
+
+def test_a_fault_is_told_with_what_was_found_of_it() -> None:
+    """What was set, from when, and the watch's own events; a bias of such a flight is not blamed on the tare."""
+    flight = _fly('air_data.total_port.faults=[{kind="blocked",start=6}]')
+    (told,) = [n for n in notes(flight) if n.startswith("set to go wrong")]
+    assert "total port blocked from 6 s." in told
+    flags = [e for e in flight.events if e["event"] == "airspeed_fault"]
+    assert flags
+    assert f"total flagged as {flags[0]['kind']} at {flags[0]['t']:.2f} s" in told
+    assert not any("tare" in n for n in notes(flight))
+
+
+def test_a_fault_after_the_end_did_nothing_and_the_note_says_so() -> None:
+    found = notes(_fly('air_data.static.faults=[{kind="stuck",start=500}]'))
+    assert "set to go wrong: static sensor stuck from 500 s, after the end at 12 s. Found on board: nothing." in found
+
+
+def test_what_was_flagged_without_a_fault_is_told(catapult: Flight) -> None:
+    assert not any("go wrong" in n for n in notes(catapult))
+    events = [*catapult.events, {"t": 7.0, "event": "airspeed_fault", "channel": "static", "kind": "frozen"}]
+    found = notes(dataclasses.replace(catapult, events=events))
+    assert found[0] == "nothing was set to go wrong; found on board: static flagged as frozen at 7.00 s."
+
+
+def test_a_filter_that_was_never_told_of_the_launch_says_why_it_lags(weak_launch: Flight) -> None:
+    (told,) = [n for n in notes(weak_launch) if n.startswith("in the stroke")]
+    assert told.endswith("without a detected launch the specific force does not aid it.")
+
+
+def test_a_rig_says_why_its_pressures_lag_only_if_there_is_air() -> None:
+    tunnel = notes(uavsim.fly("mach06", seed=1))
+    assert any(n.startswith("filtered RMSE over raw: total pressure ") for n in tunnel)
+    assert notes(uavsim.fly("launch-curve", seed=1)) == []

@@ -1,5 +1,6 @@
 """Plots of flights: drawn for whatever a record holds, readable, equal for equal flights."""
 
+import copy
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -301,6 +302,34 @@ def test_a_batch_is_whole_or_not_there(several: Batch, tmp_path: Path, monkeypat
     with pytest.raises(RuntimeError):
         batch.save(several, tmp_path / "other", overwrite=False, plots=True)
     assert [path.name for path in tmp_path.iterdir()] == ["three"]
+
+
+def test_the_error_axis_is_that_of_the_flight_not_of_still_air_before_it(several: Batch) -> None:
+    """Before the launch an estimate of still air may be right to 1e-9 m/s, which is no scale for what follows."""
+    figure = batch._airspeed_error(several)
+    assert figure is not None
+    expected = figure.axes[0].get_ylim()
+    still = copy.deepcopy(several)
+    before = still.error_time <= 0.0
+    for trace in still.traces:
+        n = min(trace.filtered.size, before.size)
+        trace.filtered[:n][before[:n]] = 1e-9
+    figure = batch._airspeed_error(still)
+    assert figure is not None
+    assert figure.axes[0].get_ylim()[0] == expected[0] > 1e-4
+
+
+def test_faults_and_what_was_noticed_of_them_are_marked() -> None:
+    """Of both, from the scenario and from on board, and no mark for a fault that begins after the end."""
+    faults = 'air_data.total_port.faults=[{kind="blocked",start=6,stop=9},{kind="ice",start=300}]'
+    flight = uavsim.fly("catapult", overrides=["duration=12", faults])
+    record = Record(flight)
+    marks = {mark.label: mark.t for mark in record.milestones}
+    assert marks["total port blocked"] == 6.0
+    assert marks["no longer total port blocked"] == 9.0
+    assert marks["total flagged"] == next(e["t"] for e in flight.events if e["event"] == "airspeed_fault")
+    assert not any("icing" in name for name in marks)
+    assert {mark.label for mark in record.milestones} - {mark.label for mark in record.marks} == set()
 
 
 def test_missed_launches_have_no_latency_to_draw(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import uavsim
 from uavsim.flight import Flight
 from uavsim.scenario import Scenario
 from uavsim.studies.batch import Batch
@@ -153,6 +154,28 @@ def test_colour_is_for_terminals_that_want_it(
     terminal.print_score(catapult)
     assert ("\x1b[1;32m" in screen.getvalue()) is colour
     assert ANSI.sub("", screen.getvalue()) == piped
+
+
+def test_a_rig_shows_what_it_has_and_the_axis_of_its_load(capsys: pytest.CaptureFixture[str]) -> None:
+    """A centrifuge loads z, and has neither rail nor wing nor phases."""
+    flight = uavsim.fly("centrifuge-15g", seed=1)
+    terminal.print_score(flight)
+    out = capsys.readouterr().out
+    assert re.search(rf"^true f_z above 4.5 g +{flight.score['launch']['crossing_time']:.3f} +s", out, re.MULTILINE)
+    assert "f_x" not in out
+    assert "rail" not in out
+    terminal.print_score(uavsim.fly("mach06", seed=1))
+    out = capsys.readouterr().out
+    assert "RMSE filtered, m/s" in out
+    assert "stroke" not in out
+    assert re.findall("–", out) == ["–"]  # of the launch that was not detected
+
+
+def test_no_minus_before_a_nought(weak_launch: Flight, capsys: pytest.CaptureFixture[str]) -> None:
+    """The last row of truth may be a few millimetres below the ground."""
+    assert -0.005 < weak_launch.score["flight"]["lowest_altitude_after_exit"] < 0.0
+    terminal.print_score(weak_launch)
+    assert re.search(r"lowest altitude since +0\.00 ", capsys.readouterr().out)
 
 
 # -- several flights -------------------------------------------------------------------------------------------------

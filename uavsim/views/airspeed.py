@@ -7,6 +7,7 @@ import numpy as np
 from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.studies.airspeed_flights import bound, course, together
 from uavsim.views import curves
+from uavsim.views.faults import set_faults
 from uavsim.views.figure import BLACK, BLUE, PHASES, RED, label, legend, sheet, tint
 from uavsim.views.marks import flag_all
 from uavsim.views.record import Array, Record, Stretch
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+SMOOTH = 0.1  # s, over which the bound is averaged where a whole flight is drawn: it rises between readings
 FEW = 200  # values, below which each has its dot
 
 
@@ -98,13 +100,23 @@ def _errors(axes: "Axes", record: Record, stretch: Stretch, least: tuple[Array, 
     curves.dots(axes, t, raw - true, "raw − true")
     _line(axes, t, speed - true, "estimate − true")
     if least is not None:
-        when, sd = least
+        when, sd = _averaged(*least) if stretch == record.span else least
         shown = (when >= stretch[0]) & (when <= stretch[1])
-        for sign, name in ((2.0, "± 2 √PCRB, the bound"), (-2.0, None)):
+        words = "± 2 √PCRB, no fault" if set_faults(record.flight.scenario) else "± 2 √PCRB, the bound"
+        for sign, name in ((2.0, words), (-2.0, None)):
             axes.plot(when[shown], sign * sd[shown], color=RED, linewidth=0.9, linestyle="--", label=name)
     axes.axhline(0.0, color=BLACK, linewidth=0.8)
     if stretch == record.span:
         curves.fit(axes, [(t, speed - true), (t, raw - true)], record.free, "m/s")
+
+
+def _averaged(t: Array, sd: Array) -> tuple[Array, Array]:
+    """Root mean squares over stretches of `SMOOTH`, at the mean of their times."""
+    bins = ((t - t[0]) / SMOOTH).astype(int)
+    counts = np.bincount(bins)
+    there = counts > 0
+    when, square = (np.bincount(bins, values)[there] / counts[there] for values in (t, sd**2))
+    return when, np.sqrt(square)
 
 
 def _line(axes: "Axes", t: Array, y: Array, name: str) -> None:

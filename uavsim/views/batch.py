@@ -247,7 +247,7 @@ def _airspeed_error(flown: Batch) -> "Figure | None":
         _envelope(share, time, ratio, BLACK, "filtered / raw", worst=False)
         share.axhline(1.0, color=RED, linewidth=0.9, linestyle="--", label="no help")
         speed.set_xlim(time[0], ENLARGED if i else time[-1])
-        _error_axes(speed, share, filtered, raw)
+        _error_axes(speed, share, time, filtered, raw)
     label(axes[0][0], "airspeed error, m/s")
     label(axes[1][0], "filtered / raw", "time since true launch, s")
     for row in axes:
@@ -277,14 +277,16 @@ def _envelope(axes: "Axes", time: Array, values: Array, colour: str, name: str, 
         axes.plot(time, greatest, color=colour, linewidth=0.9, linestyle=":", label=f"{name}, worst")
 
 
-def _error_axes(speed: "Axes", share: "Axes", *errors: Array) -> None:
-    """Scale the axes of an error and of a ratio of errors."""
+def _error_axes(speed: "Axes", share: "Axes", time: Array, *errors: Array) -> None:
+    """Scale the axes of an error and of a ratio of errors; the exact zeros of still air widen neither."""
     from matplotlib.ticker import LogLocator
 
     positive = np.concatenate([e[np.isfinite(e) & (e > 0.0)] for e in errors])
     speed.set_yscale("log", subs=())
     speed.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    speed.set_ylim(0.6 * float(np.quantile(positive, 0.002)), 1.3 * float(positive.max()))
+    flown = np.concatenate([e[:, time > 0.0].ravel() for e in errors])
+    flown = flown[np.isfinite(flown) & (flown > 0.0)]
+    speed.set_ylim(0.6 * float(np.quantile(flown if flown.size else positive, 0.002)), 1.3 * float(positive.max()))
     speed.yaxis.set_major_formatter("{x:g}")
     share.set_ylim(bottom=0.0)
     share.set_xlabel("time since true launch, s", fontsize=SMALL + 1.0)
@@ -341,7 +343,9 @@ def _consistency_words(nees: Array, least: "tuple[Array, Array] | None") -> str:
     words = (
         f"(error/sd claimed)² over the flights: mean {means.mean():.2f}, in its band at {100 * inside:.0f} % of times"
     )
-    return words + ("" if least is None else "; below: against the least that the readings allow")
+    return words + (
+        "" if least is None else "; below: against the least that readings allow in the mean of many flights"
+    )
 
 
 # -- outcomes --------------------------------------------------------------------------------------------------------

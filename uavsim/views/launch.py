@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.onboard.launch.settings import USES, reference
+from uavsim.score import launch_axis
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
 from uavsim.views.launch_sum import HEIGHTS, draw_held, held
@@ -71,7 +72,9 @@ def _words(record: Record) -> str:
     else:
         words += "no launch detected" if record.detected is None else "launch detected"
     if crossing is not None:
-        words += f", {1e3 * crossing:.1f} ms after the true $f_x$ crossed {CROSSING_G:g} g"
+        axis = launch_axis(record.settings("plant")["kind"], record.settings("detector")["axes"])
+        force = f"${'-' if axis[0] == '-' else ''}f_{axis[1]}$"
+        words += f", {1e3 * crossing:.1f} ms after the true {force} crossed {CROSSING_G:g} g"
     false = record.scored("launch", "false_detections")
     return words if false is None else f"{words}; false detections before release: {false}"
 

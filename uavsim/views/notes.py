@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from uavsim.views.faults import noticed, set_faults
+
 if TYPE_CHECKING:
     from uavsim.flight import Flight
 
@@ -11,13 +13,40 @@ if TYPE_CHECKING:
 PAPER_GAIN = 0.8  # of the published method's filter on the total pressure
 LITTLE = 5.0  # %, a reduction of the RMSE that is not worth a filter
 QUIET = 0.5  # share of the lag below which a sensor's noise is too little to be worth it
+FINDINGS = 6  # that are told one by one
 MOSTLY = 0.7  # share of the RMSE that makes the bias the story
 
 
 def notes(flight: "Flight") -> list[str]:
     """Sentences on a flight's score, none where nothing needs saying."""
-    found = [_stroke(flight), _bias(flight) or _no_help(flight), _single_flight(flight)]
+    found = [_faults(flight), _stroke(flight), _bias(flight) or _no_help(flight), _lag(flight), _single_flight(flight)]
     return [note for note in found if note]
+
+
+def _faults(flight: "Flight") -> str:
+    """Say what was made to go wrong and what was found of it on board, or what was found where nothing was wrong.
+
+    On a rig without air there is no airspeed to lose.
+    """
+    if not flight.score["airspeed"]["samples"]:
+        return ""
+    end = float(flight.score["flight"]["duration"])
+    wrong = []
+    for fault in set_faults(flight.scenario):
+        until = f" to {fault.stop:g} s" if fault.stop < end else ""
+        beyond = f", after the end at {end:g} s" if fault.start >= end else ""
+        wrong.append(f"{fault.name} from {fault.start:g} s{until}{beyond}")
+    found = [_found(event) for event in flight.events if noticed(event)]
+    more = f" and {len(found) - FINDINGS} more" if len(found) > FINDINGS else ""
+    told = (", ".join(found[:FINDINGS]) or "nothing") + more
+    if wrong:
+        return f"set to go wrong: {', '.join(wrong)}. Found on board: {told}."
+    return f"nothing was set to go wrong; found on board: {told}." if found else ""
+
+
+def _found(event: dict[str, Any]) -> str:
+    kind = f" as {event['kind']}" if event.get("kind") else ""
+    return f"{noticed(event)}{kind} at {event['t']:.2f} s"
 
 
 def _stroke(flight: "Flight") -> str:
@@ -25,9 +54,30 @@ def _stroke(flight: "Flight") -> str:
     if stroke["reduction_percent"] is None:
         return ""
     ratio = stroke["rmse"] / stroke["rmse_raw"]
-    return f"in the stroke the filtered RMSE is {ratio:.2f} of the raw one" + (
-        ": while the airspeed rises the filter's lag adds to the sensors' delay." if ratio > 1.0 else "."
-    )
+    said = f"in the stroke the filtered RMSE is {ratio:.2f} of the raw one"
+    if ratio <= 1.0:
+        return f"{said}."
+    launch = flight.score["launch"]["detected_time"] is not None
+    unaided = flight.scenario["estimator"]["kind"] == "aided" and not launch
+    why = "; without a detected launch the specific force does not aid it." if unaided else "."
+    return f"{said}: while the airspeed rises the filter's lag adds to the sensors' delay{why}"
+
+
+def _lag(flight: "Flight") -> str:
+    """Say why a filtered pressure is worse than the readings, where no stroke has said it yet."""
+    stroke = flight.score["airspeed"]["stroke"]
+    pressure = flight.score["pressure"]
+    gains = {name: pressure[name]["reduction_percent"] for name in ("total", "static")}
+    worse = [name for name, gain in gains.items() if gain is not None and gain < -LITTLE]
+    if (
+        not worse
+        or not flight.score["airspeed"]["samples"]
+        or stroke["reduction_percent"] is not None
+        or set_faults(flight.scenario)
+    ):
+        return ""
+    said = " and ".join(f"{name} pressure {1.0 - 0.01 * gains[name]:.2f}" for name in worse)
+    return f"filtered RMSE over raw: {said}; while a pressure keeps rising or falling its filter lags behind."
 
 
 def _bias(flight: "Flight") -> str:
@@ -35,6 +85,8 @@ def _bias(flight: "Flight") -> str:
     airspeed = flight.score["airspeed"]
     if not airspeed["rmse"] or abs(airspeed["bias"]) < MOSTLY * airspeed["rmse"]:
         return ""
+    if set_faults(flight.scenario):
+        return f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, a fault having been set."
     tare = flight.scenario["air_data"]["tare"]
     return (
         f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, which no filter takes away "

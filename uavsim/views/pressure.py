@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-NOTE = "errors: from cover off,\nless their mean before\nlaunch, which the score\ngives as bias"
+COVERED = "errors: from cover off,\nless their mean before\nlaunch, which the score\ngives as bias"
+OPEN = "errors: less their mean\nbefore launch, which the\nscore gives as bias"
 
 Series = tuple[Array, Array]  # time, s, and pressure, Pa
 
@@ -42,7 +43,8 @@ def draw(record: Record) -> "Figure | None":
     legend(axes[0][-1], *axes[0])
     if judged:
         beside = axes[1][-1]
-        beside.text(1.01, 1.0, NOTE, transform=beside.transAxes, fontsize=SMALL, va="top", color=DARK)
+        words = OPEN if _covered_until(record) is None else COVERED
+        beside.text(1.01, 1.0, words, transform=beside.transAxes, fontsize=SMALL, va="top", color=DARK)
     return figure
 
 

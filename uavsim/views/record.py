@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from uavsim.score import CROSSING
 from uavsim.truth import STANDARD_GRAVITY
+from uavsim.views.faults import noticed, set_faults
 from uavsim.views.figure import BLACK, BLUE, GREY, PHASES, RED
 from uavsim.views.marks import Mark
 
@@ -140,8 +141,24 @@ class Record:
             (self.event("wings_commanded"), "wings commanded", BLUE),
             (self.scored("flight", "wing_out_time"), "wing out", BLACK),
             (self.event("motor_on"), "motor on", BLUE),
+            *self.troubles,
         ]
         return sorted((Mark(t, label, colour) for t, label, colour in moments if t is not None), key=lambda m: m.t)
+
+    @cached_property
+    def troubles(self) -> list[tuple[float, str, str]]:
+        """What was set to go wrong with a sensor within the record, and the first of each kind noticed on board."""
+        first, last = self.span
+        found: dict[str, tuple[float, str]] = {}
+        for fault in set_faults(self.flight.scenario):
+            if fault.start < last:
+                found.setdefault(fault.name, (max(fault.start, first), BLACK))
+                if fault.stop < last:
+                    found.setdefault(f"no longer {fault.name}", (fault.stop, BLACK))
+        for event in self.flight.events:
+            if words := noticed(event):
+                found.setdefault(words, (float(event["t"]), BLUE))
+        return [(t, words, colour) for words, (t, colour) in found.items()]
 
     def named(self, *labels: str) -> list[Mark]:
         """Pick marks by their labels."""
@@ -151,7 +168,8 @@ class Record:
     def milestones(self) -> list[Mark]:
         """The few marks that a whole flight has room for; where truth is missing, what was noticed on board."""
         pairs = (("true launch", "detected"), ("rail exit", "stroke end noticed"), ("wing out", "wings commanded"))
-        return [mark for true, noticed in pairs for mark in (self.named(true) or self.named(noticed))[:1]]
+        few = [mark for true, told in pairs for mark in (self.named(true) or self.named(told))[:1]]
+        return [*few, *(Mark(t, words, colour) for t, words, colour in self.troubles)]
 
     # -- stretches of time ---------------------------------------------------------------------------------------------
 

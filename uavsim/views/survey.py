@@ -18,14 +18,14 @@ from uavsim import airdata
 from uavsim.flight import claim, unfinished, write_json, write_toml
 from uavsim.studies.survey import Survey, box, choose
 from uavsim.studies.survey.paper_case import curves
-from uavsim.studies.survey.ranking import Rank, pair_error
+from uavsim.studies.survey.ranking import EQUAL, Rank, pair_error
 from uavsim.views.figure import BLACK, BLUE, DARK, GREY, LIGHT, RED, SMALL, dress, label, sheet
 from uavsim.views.figure import save as save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LISTED = 8  # places of each role that are printed and numbered on the map
+LISTED = 8  # places of each role that are printed, and the one named
 COLUMNS = (
     "role", "rank", "rank_raw", "place", "part", "kind", "x", "y", "z", "share_mean", "share_least", "share_most",
     "rms_raw", "rms_calibrated", "rms_calibrated_angles", "rms_worst_phase", "available", "share_per_mm", "caveat",
@@ -163,11 +163,18 @@ def lines(found: Survey) -> list[str]:
         f"{alpha[1]:.1f}, beta {beta[0]:.1f} to {beta[1]:.1f} deg, Mach {slow:.3f} to {fast:.3f}",
         f"speed along wing sections: {speed}",
         "",
-        f"{'total pressure':<42}{'m/s rms raw':>12}{'calibrated':>12}{'in stream':>11}",
-        *(_line(each) for each in found.total[:LISTED]),
-        "",
-        f"{'static pressure':<42}{'m/s rms raw':>12}{'calibrated':>12}{'in stream':>11}",
-        *(_line(each) for each in found.static[:LISTED]),
+    ]
+    caveats: dict[str, str] = {}
+    for name, ranks in (("total pressure", found.total), ("static pressure", found.static)):
+        said += [
+            f"{name:<42}{'m/s rms raw':>12}{'calibrated':>12}{'in stream':>11}",
+            *(_line(number, each, choose(ranks), caveats) for number, each in _listed(ranks)),
+            "",
+        ]
+    said += [f"{letter}: {caveat}" for caveat, letter in caveats.items()]
+    said += [
+        "*: the port that is named: of the places in the stream all the time and without such a reason against them",
+        f"   within {EQUAL:g} m/s of the least when calibrated, the one that is least off as it is",
         "",
     ]
     for role, ranks in (("total", found.total), ("static", found.static)):
@@ -201,9 +208,20 @@ def _figures(each: Rank) -> str:
     return f"{each.raw:.2f} m/s rms, calibrated once {each.constant:.2f}"
 
 
-def _line(each: Rank) -> str:
-    mark = "" if not each.place.caveat else f"  ({each.place.caveat})"
-    return f"{each.place.name:<42}{each.raw:>12.3f}{each.constant:>12.3f}{100 * each.available:>10.0f}%{mark}"
+def _listed(ranks: list[Rank]) -> list[tuple[int, Rank]]:
+    """Return the best places with their rank, and the one that is named if it is not among them."""
+    named = choose(ranks)
+    return [(n, each) for n, each in enumerate(ranks, start=1) if n <= LISTED or each is named]
+
+
+def _line(number: int, each: Rank, named: Rank, caveats: dict[str, str]) -> str:
+    """Return a row; a reason against the place is a letter, which `caveats` keeps with the reason."""
+    place = f"{number:>3} {each.place.name}"
+    caveat = each.place.caveat
+    letter = caveats.setdefault(caveat, "abcdefghijklmnopqrstuvwxyz"[len(caveats) % 26]) if caveat else ""
+    mark = letter or ("*" if each is named else "")
+    row = f"{place:<42}{each.raw:>12.3f}{each.constant:>12.3f}{100 * each.available:>10.0f}%"
+    return f"{row} {mark}".rstrip()
 
 
 # -- figures
@@ -303,7 +321,7 @@ def _dots(axes: "Axes", ranks: list[Rank], marker: str, size: float, norm: Any, 
 def _point_out(axes: "Axes", each: Rank, role: str, colour: str, *, side: bool) -> None:
     """Name a place that is chosen."""
     at = each.place.position[0], each.place.position[2 if side else 1]
-    up = 52.0 if role == "total" else 24.0 if side else -48.0
+    up = 52.0 if role == "total" else -34.0 if side else -48.0
     right = -20.0 if side and role == "static" else 10.0
     axes.annotate(
         f"{role}: {each.place.name}", at, xytext=(right, up), textcoords="offset points",

@@ -6,6 +6,7 @@ All fit into 80 columns and are the same lines in a pipe; colours are for termin
 import os
 import sys
 from collections.abc import Iterable
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 from rich import box
@@ -14,6 +15,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from uavsim.plants.rig_settings import AIRCRAFT
+from uavsim.score import launch_axis
 from uavsim.views.notes import notes
 
 if TYPE_CHECKING:
@@ -65,7 +67,7 @@ def _table(columns: Iterable[str]) -> Table:
 
 
 def _number(value: Any, digits: int = 3) -> str:
-    return "–" if value is None else f"{value:.{digits}f}"
+    return "–" if value is None else f"{round(value, digits) + 0:.{digits}f}"  # + 0: no minus before a nought
 
 
 def _milli(value: float | None) -> float | None:
@@ -84,28 +86,33 @@ def print_score(flight: "Flight") -> None:
         verdict += "; a requirement is not met"
     outcome = f"[bold {'green' if right else 'red'}]{score['outcome']}[/]"
     head = f"\n[bold]{escape(flight.scenario['name'])}[/bold], seed {score['seed']}: {outcome} ({verdict})\n"
-    _print(console, head, _launch_table(score), "")
-    if flight.scenario["plant"]["kind"] == AIRCRAFT or score["airspeed"]["samples"]:
-        _print(console, _airspeed_table(score["airspeed"]), "", _pressure_table(score["pressure"]), "")
+    _print(console, head, _launch_table(flight), "")
+    flew = flight.scenario["plant"]["kind"] == AIRCRAFT
+    if flew or score["airspeed"]["samples"]:
+        phases = ("stroke", "transition", "cruise") if flew else ()
+        _print(console, _airspeed_table(score["airspeed"], phases), "", _pressure_table(score["pressure"]), "")
     if score["requirements"]:
         _print(console, _requirements_table(score["requirements"]), "")
     for note in notes(flight):
         console.print(f"Note: {escape(note)}")
 
 
-def _launch_table(score: dict[str, Any]) -> Table:
-    launch, flight = score["launch"], score["flight"]
-    left = (
+def _launch_table(flown: "Flight") -> Table:
+    """Return the launch's times and what followed; of a rig only what it has."""
+    launch, flight, plant = flown.score["launch"], flown.score["flight"], flown.scenario["plant"]["kind"]
+    axis = launch_axis(plant, flown.scenario["detector"]["axes"])
+    force = f"{'−' if axis[0] == '-' else ''}f_{axis[1]}"
+    left: tuple[tuple[str, str, str], ...] = (
         ("release", _number(launch["release_time"]), "s"),
         ("true launch, 1 mm moved", _number(launch["true_time"]), "s"),
-        ("true f_x above 4.5 g", _number(launch["crossing_time"]), "s"),
+        (f"true {force} above 4.5 g", _number(launch["crossing_time"]), "s"),
         ("launch detected", _number(launch["detected_time"], 4), "s"),
         ("latency", _number(_milli(launch["latency"]), 1), "ms"),
         ("  from the 4.5 g on", _number(_milli(launch["latency_from_crossing"]), 1), "ms"),
         ("false detections", _number(launch["false_detections"], 0), ""),
         ("flown", _number(flight["duration"], 1), "s"),
     )
-    right = (
+    right: tuple[tuple[str, str, str], ...] = (
         ("last shoe off the rail", _number(flight["rail_exit_time"]), "s"),
         ("  true airspeed there", _number(flight["rail_exit_speed"], 2), "m/s"),
         ("  altitude there", _number(flight["rail_exit_altitude"], 2), "m"),
@@ -117,13 +124,16 @@ def _launch_table(score: dict[str, Any]) -> Table:
     table = Table(box=None, show_header=False, pad_edge=False)
     for justify in ("left", "right", "left") * 2:
         table.add_column(justify=justify, no_wrap=True)
-    for one, other in zip(left, (*right, ("", "", "")), strict=True):
+    if plant != AIRCRAFT:
+        left = tuple(row for row in left if row[1] != "–" or row[0] == "launch detected")
+        right = tuple(row for row in right if row[1] != "–")
+    for one, other in zip_longest(left, right, fillvalue=("", "", "")):
         table.add_row(*one[:2], f"{one[2]:<6}", *other)
     return table
 
 
-def _airspeed_table(airspeed: dict[str, Any]) -> Table:
-    columns = {"all": airspeed, **{name: airspeed[name] for name in ("stroke", "transition", "cruise")}}
+def _airspeed_table(airspeed: dict[str, Any], phases: tuple[str, ...]) -> Table:
+    columns = {"all": airspeed, **{name: airspeed[name] for name in phases}}
     table = _table(["Airspeed against truth", *columns])
     for label, key, digits in (
         ("RMSE raw, m/s", "rmse_raw", 3),
@@ -173,6 +183,7 @@ def _wanted(low: float | None, high: float | None) -> str:
 
 def print_batch(flown: "Batch") -> None:
     """Print what several flights gave: outcomes, quantiles of latency and error, what was not as it should be."""
+    from uavsim.consistency import mean_band
     from uavsim.studies.batch_bound import against_bound
 
     console, runs = _console(), flown.runs
@@ -183,9 +194,14 @@ def print_batch(flown: "Batch") -> None:
     table = _quantile_table(flown)
     if table.row_count:
         _print(console, table, "")
-    for name, found in against_bound(flown).items():
+    bounds = against_bound(flown)
+    for name, found in bounds.items():
         when = "from 0.1 to 2 s after launch" if name == "first_2_s" else "later"
         _print(console, f"RMSE over √PCRB {when}: {found.rmse:.3f} / {found.bound:.3f} m/s = {found.ratio:.2f}")
+    if bounds:
+        low, high = (bound**0.5 for bound in mean_band(len(flown.traces)))
+        flights = f"{len(flown.traces)} flights at the bound"
+        _print(console, f"  {flights}: 95 % within {low:.2f} … {high:.2f} (error constant over a flight)")
     _print(console, f"False detections before release: {false}", f"Flights with a requirement that is not met: {unmet}")
 
 

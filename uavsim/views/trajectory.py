@@ -82,7 +82,8 @@ def _over_time(column: "Sequence[Axes]", record: Record, stretch: Stretch) -> No
     column[0].tick_params(labelbottom=False)
     label(column[-1], x="time, s")
     more = ("detected", "wings commanded", "wing out") if stretch != record.span else ()
-    flags(column, stack(column[0], record.named("true launch", "rail exit", "motor on", *more)))
+    shown = record.named("true launch", "rail exit", "motor on", *more, *(name for _, name, _ in record.troubles))
+    flags(column, stack(column[0], shown))
 
 
 # -- path ------------------------------------------------------------------------------------------------------------

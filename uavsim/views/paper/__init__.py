@@ -43,5 +43,7 @@ def print_entries(found: "Reproduction") -> None:
     """Print a line a table: whether it agrees, and whether that is as documented."""
     for name, entry in found.entries.items():
         word = "agrees" if entry.agrees else "differs"
-        remark = "" if entry.as_documented else ", which is NOT as documented"
+        remark = ", which is NOT as documented"
+        if entry.as_documented:
+            remark = "" if entry.agrees else ", as documented"
         terminal.say(f"{heading(name):<12}{entry.title:<50}{word}{remark}")

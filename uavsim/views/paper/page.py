@@ -71,7 +71,9 @@ def heading(name: str) -> str:
 def verdict(entry: Entry) -> str:
     """Whether it agrees, and whether that is as documented, as HTML."""
     word = "yes" if entry.agrees else "no"
-    end = "" if entry.as_documented else ", <strong>not as documented</strong>"
+    end = ", <strong>not as documented</strong>"
+    if entry.as_documented:
+        end = "" if entry.agrees else ", as documented"
     return f'<span class="{word}">{word}</span>{end}'
 
 

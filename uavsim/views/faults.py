@@ -1,0 +1,48 @@
+"""What a scenario makes go wrong with a sensor, and what was found of it on board: a fault's kind, place and times."""
+
+from dataclasses import dataclass
+from typing import Any
+
+PLACES = {
+    ("air_data", "total_port"): "total port",
+    ("air_data", "static_port"): "static port",
+    ("air_data", "total"): "total sensor",
+    ("air_data", "static"): "static sensor",
+    ("accelerometer",): "accelerometer",
+}
+PARTICIPLES = {"leak": "leaking", "ice": "icing", "water": "wet", "spike": "spiked", "offset": "offset"}
+
+
+@dataclass(frozen=True, slots=True)
+class SetFault:
+    """A fault that the scenario sets, as "total port blocked"; from `start` to `stop`, s."""
+
+    name: str
+    start: float
+    stop: float
+
+
+def set_faults(scenario: dict[str, Any]) -> list[SetFault]:
+    """Return the faults of all sensors and ports in the order of their start; none of a recording."""
+    found = []
+    for keys, place in PLACES.items():
+        group: Any = scenario
+        for key in keys:
+            group = group.get(key) or {}
+        for fault in group.get("faults") or ():
+            kind = str(fault["kind"])
+            found.append(
+                SetFault(f"{place} {PARTICIPLES.get(kind, kind)}", float(fault["start"]), float(fault["stop"]))
+            )
+    return sorted(found, key=lambda fault: fault.start)
+
+
+def noticed(event: dict[str, Any]) -> str:
+    """Return an event of the airspeed's watch in words, as "total flagged"; nothing of any other event."""
+    channel = event.get("channel", "")
+    return {
+        "airspeed_fault": f"{channel} flagged",
+        "airspeed_recovered": f"{channel} trusted again",
+        "airspeed_lost": "airspeed given up",
+        "airspeed_back": "airspeed back",
+    }.get(event["event"], "")
