@@ -20,12 +20,12 @@ def flown(name: str, flights: int = FLIGHTS) -> list[FaultFlight]:
     return campaign(name, flights, first_seed=SEED, workers=2)
 
 
-@pytest.mark.parametrize("name", ["healthy-gusty", "healthy-climb", "spikes"])
+@pytest.mark.parametrize("name", ["healthy-gusty", "healthy-climb", "healthy-speeds", "spikes"])
 def test_healthy_ports_are_not_flagged(name: str) -> None:
     """Nor does a spike in each fiftieth reading count as a fault."""
     found = flown(name)
     assert [f.seed for f in found if f.false or f.flagged == f.flagged] == []
-    assert {f.outcome for f in found} == {"cruise"}
+    assert all(f.outcome not in ("crashed", "diverged") for f in found)
 
 
 @pytest.mark.parametrize("name", ["blocked-gusts", "blocked-climb", "blocked-descent", "iced-climb", "stuck"])
@@ -58,10 +58,20 @@ def test_a_port_that_is_free_again_is_taken_back(figure: Figure) -> None:
     figure("freed after 3 s: taken back after", [f.recovered - f.fault - 3.0 for f in found], "s", 0.0, 6.0)
 
 
-def test_a_blocked_static_port_is_flagged(figure: Figure) -> None:
-    found = flown("static-climb", 10)
-    figure("static-climb: delay", [f.delay for f in found], "s", 0.0, 2.0)
+@pytest.mark.parametrize("name", ["static-climb", "static-gusts", "static-stuck"])
+def test_a_static_port_is_flagged_and_not_the_other(name: str, figure: Figure) -> None:
+    """At most two of 20 blame the total port first; it was 14 of 40 in a climb."""
+    found = flown(name)
+    figure(f"{name}: delay", [f.delay for f in found], "s", 0.0, 2.0)
     assert all(f.outcome not in ("crashed", "diverged") for f in found)
+    assert summarise(name, found).blamed >= FLIGHTS - 2
+
+
+def test_a_slow_leak_in_gusts_is_seen_in_the_end(figure: Figure) -> None:
+    """A leak of 5 s is followed as if it were gusts, until it has gone too far for one: more than half of 10."""
+    found = [f for f in flown("slow-leak-gusts", 10) if f.flagged == f.flagged]
+    figure("slow-leak-gusts: delay", [f.delay for f in found], "s", 0.0, 16.0)
+    assert len(found) > 5
 
 
 def test_a_case_and_a_seed_fix_the_flight() -> None:
