@@ -12,8 +12,9 @@ import pytest
 
 import uavsim
 from uavsim.flight import Flight
-from uavsim.scenario import Scenario
+from uavsim.scenario import Scenario, load_scenario
 from uavsim.studies.batch import Batch
+from uavsim.studies.batch_bound import AgainstBound
 from uavsim.studies.cost import Cost, OnboardCost
 from uavsim.studies.quantiles import quantile_band
 from uavsim.views import terminal
@@ -213,6 +214,29 @@ def test_figures_that_no_flight_has_are_left_out(capsys: pytest.CaptureFixture[s
     flown.runs[flown.runs.select_dtypes(float).columns] = np.nan
     terminal.print_batch(flown)
     assert "Quantiles" not in capsys.readouterr().out
+
+
+def test_flights_with_a_fault_say_which(capsys: pytest.CaptureFixture[str]) -> None:
+    """Beside a bound that knows of none."""
+    terminal.print_batch(batch(3))
+    assert "go wrong" not in capsys.readouterr().out
+    faults = ('air_data.static_port.faults=[{kind="leak",start=5,stop=9}]', "duration=20")
+    flown = dataclasses.replace(batch(3), scenario=load_scenario("catapult", overrides=faults))
+    terminal.print_batch(flown)
+    assert "Set to go wrong: static port leaking from 5 s to 9 s; √PCRB knows" in capsys.readouterr().out
+
+
+def test_few_flights_come_with_the_chance_that_they_leave(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Six flights: χ²_6/6 is within 0.206 and 2.408 in 95 % (tables of χ²), an RMSE over the bound within its roots."""
+    found = {"after": AgainstBound(0.040, 0.051, 0.78)}
+    monkeypatch.setattr("uavsim.studies.batch_bound.against_bound", lambda _: found)
+    terminal.print_batch(dataclasses.replace(batch(6), traces=[None] * 6))  # type: ignore[list-item]
+    out = capsys.readouterr().out
+    assert "RMSE over √PCRB later: 0.040 / 0.051 m/s = 0.78" in out
+    assert f"6 flights at the bound: 95 % within {0.206**0.5:.2f} … {2.408**0.5:.2f} " in out
+    assert widest(out) <= 80
 
 
 # -- cost -----------------------------------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from uavsim.flight import claim, unfinished, write_json
 from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch
 from uavsim.studies.batch_bound import FEWEST, against_bound, least_error
 from uavsim.studies.quantiles import ecdf_band, quantile_band
+from uavsim.views.faults import set_faults
 from uavsim.views.figure import (
     BLACK,
     BLUE,
@@ -323,7 +324,8 @@ def _consistency(flown: Batch) -> "Figure | None":
         upper.yaxis.set_major_formatter("{x:g}")
         lower.plot(time[there], filtered, color=BLUE, linewidth=1.3, label="RMSE over the flights")
         if least is not None:
-            lower.plot(*least, color=RED, linewidth=1.1, linestyle="--", label="bound, √PCRB")
+            words = "√PCRB, no fault" if set_faults(flown.scenario.to_dict()) else "bound, √PCRB"
+            lower.plot(*least, color=RED, linewidth=1.1, linestyle="--", label=words)
         lower.set_yscale("log")
         lower.yaxis.set_major_formatter("{x:g}")
         lower.set_xlabel("time since true launch, s", fontsize=SMALL + 1.0)

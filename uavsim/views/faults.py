@@ -37,6 +37,16 @@ def set_faults(scenario: dict[str, Any]) -> list[SetFault]:
     return sorted(found, key=lambda fault: fault.start)
 
 
+def told(scenario: dict[str, Any], end: float) -> str:
+    """Return the faults in words, as "total port blocked from 12 s to 20 s"; `end` of the flight, s."""
+    words = []
+    for fault in set_faults(scenario):
+        until = f" to {fault.stop:g} s" if fault.stop < end else ""
+        beyond = f", after the end at {end:g} s" if fault.start >= end else ""
+        words.append(f"{fault.name} from {fault.start:g} s{until}{beyond}")
+    return ", ".join(words)
+
+
 def noticed(event: dict[str, Any]) -> str:
     """Return an event of the airspeed's watch in words, as "total flagged"; nothing of any other event."""
     channel = event.get("channel", "")

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from uavsim.views.faults import noticed, set_faults
+from uavsim.views.faults import noticed, set_faults, told
 
 if TYPE_CHECKING:
     from uavsim.flight import Flight
@@ -30,18 +30,13 @@ def _faults(flight: "Flight") -> str:
     """
     if not flight.score["airspeed"]["samples"]:
         return ""
-    end = float(flight.score["flight"]["duration"])
-    wrong = []
-    for fault in set_faults(flight.scenario):
-        until = f" to {fault.stop:g} s" if fault.stop < end else ""
-        beyond = f", after the end at {end:g} s" if fault.start >= end else ""
-        wrong.append(f"{fault.name} from {fault.start:g} s{until}{beyond}")
+    wrong = told(flight.scenario, float(flight.score["flight"]["duration"]))
     found = [_found(event) for event in flight.events if noticed(event)]
     more = f" and {len(found) - FINDINGS} more" if len(found) > FINDINGS else ""
-    told = (", ".join(found[:FINDINGS]) or "nothing") + more
+    listed = (", ".join(found[:FINDINGS]) or "nothing") + more
     if wrong:
-        return f"set to go wrong: {', '.join(wrong)}. Found on board: {told}."
-    return f"nothing was set to go wrong; found on board: {told}." if found else ""
+        return f"set to go wrong: {wrong}. Found on board: {listed}."
+    return f"nothing was set to go wrong; found on board: {listed}." if found else ""
 
 
 def _found(event: dict[str, Any]) -> str:

@@ -16,6 +16,7 @@ from rich.table import Table
 
 from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.score import launch_axis
+from uavsim.views.faults import told
 from uavsim.views.notes import notes
 
 if TYPE_CHECKING:
@@ -194,6 +195,9 @@ def print_batch(flown: "Batch") -> None:
     table = _quantile_table(flown)
     if table.row_count:
         _print(console, table, "")
+    wrong = told(flown.scenario.to_dict(), flown.scenario.duration)
+    if wrong:
+        _print(console, f"Set to go wrong: {wrong}; √PCRB knows of no fault")
     bounds = against_bound(flown)
     for name, found in bounds.items():
         when = "from 0.1 to 2 s after launch" if name == "first_2_s" else "later"
