@@ -240,6 +240,9 @@ def test_several_flights(run: Run, tmp_path: Path) -> None:
     runs = pd.read_parquet(folder / "runs.parquet")
     assert list(runs["seed"]) == [2, 3]
     assert load(folder / "flights" / "2").score["seed"] == 2
+    whole = run("replay", str(folder))
+    assert whole.status == 2
+    assert whole.err == f"Error: {folder} holds several flights: give one of the folders in {folder / 'flights'}\n"
 
 
 # -- what comes out --------------------------------------------------------------------------------------------------

@@ -188,7 +188,7 @@ def test_several_flights_fit_80_columns(capsys: pytest.CaptureFixture[str], flig
     terminal.print_batch(flown)
     out = capsys.readouterr().out
     assert widest(out) <= 80
-    assert f"a name, {flights} flights: " in out
+    assert f"a name, {flights} flight{'' if flights == 1 else 's'}: " in out
     assert f"False detections before release: {2 * flights}" in out
     assert "a requirement that is not met: 1" in out
     lines = out.splitlines()

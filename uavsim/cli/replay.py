@@ -52,6 +52,8 @@ def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bo
 
     name = f"{flight.resolve().name}-replay"
     with user_input():
+        if (flight / "campaign.json").is_file():
+            raise ValueError(f"{flight} holds several flights: give one of the folders in {flight / 'flights'}")
         recorded = load(flight)
         Scenario.from_dict(recorded.scenario, str(flight / "scenario.toml"))
         missing = [table for table in ("accelerometer", "air_data", "truth") if table not in recorded.tables]

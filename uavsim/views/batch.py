@@ -155,7 +155,8 @@ def save_batch_plots(flown: Batch, folder: Path) -> list[Path]:
 def _title(flown: Batch) -> str:
     seeds = flown.runs["seed"]
     partly = "" if flown.complete else " (interrupted)"
-    return f"{flown.scenario.name}, {len(seeds)} flights, seeds {seeds.min()} to {seeds.max()}{partly}"
+    which = f"flights, seeds {seeds.min()} to {seeds.max()}" if len(seeds) > 1 else f"flight, seed {seeds.min()}"
+    return f"{flown.scenario.name}, {len(seeds)} {which}{partly}"
 
 
 def _latency(flown: Batch) -> "Figure | None":
@@ -205,7 +206,7 @@ def _distribution(axes: "Axes", sample: Array, unit: str) -> None:
     share, low, high = (np.append(y, y[-1]) for y in (band.share, band.low, band.high))
     words = "95 % pointwise (Clopper–Pearson)"
     axes.fill_between(x, low, high, step="post", color=BLUE, alpha=0.2, linewidth=0.0, label=words)
-    axes.step(x, share, where="post", color=BLUE, linewidth=1.4, label=f"{sample.size} flights")
+    axes.step(x, share, where="post", color=BLUE, linewidth=1.4, label=f"{sample.size} flight{'s' * (sample.size > 1)}")
     finite = sample[np.isfinite(sample)]
     if finite.size < sample.size:
         axes.axhline(share[-1], color=GREY, linewidth=0.8, label=f"{sample.size - finite.size} never detected")

@@ -191,7 +191,7 @@ def print_batch(flown: "Batch") -> None:
     summary = ", ".join(f"{count} {name}" for name, count in runs["outcome"].value_counts().items())
     false = int(runs["launch.false_detections"].sum())
     unmet = int((~runs["requirements.met"].astype(bool)).sum())
-    _print(console, f"\n[bold]{escape(flown.scenario.name)}[/bold], {len(runs)} flights: {summary}\n")
+    _print(console, f"\n[bold]{escape(flown.scenario.name)}[/bold], {_flights(len(runs))}: {summary}\n")
     table = _quantile_table(flown)
     if table.row_count:
         _print(console, table, "")
@@ -204,9 +204,13 @@ def print_batch(flown: "Batch") -> None:
         _print(console, f"RMSE over √PCRB {when}: {found.rmse:.3f} / {found.bound:.3f} m/s = {found.ratio:.2f}")
     if bounds:
         low, high = (bound**0.5 for bound in mean_band(len(flown.traces)))
-        flights = f"{len(flown.traces)} flights at the bound"
+        flights = f"{_flights(len(flown.traces))} at the bound"
         _print(console, f"  {flights}: 95 % within {low:.2f} … {high:.2f} (error constant over a flight)")
     _print(console, f"False detections before release: {false}", f"Flights with a requirement that is not met: {unmet}")
+
+
+def _flights(number: int) -> str:
+    return f"{number} flight" if number == 1 else f"{number} flights"
 
 
 def _quantile_table(flown: "Batch") -> Table:
