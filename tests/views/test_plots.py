@@ -1,6 +1,7 @@
 """Plots of flights: drawn for whatever a record holds, readable, equal for equal flights."""
 
 import copy
+import dataclasses
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -19,7 +20,7 @@ from uavsim.scenario import Scenario
 from uavsim.score import Judged, score
 from uavsim.studies.batch import Batch, ErrorTrace, _flat
 from uavsim.truth import STANDARD_GRAVITY
-from uavsim.views import batch, launch, plots, trajectory
+from uavsim.views import batch, launch, plots, pressure, trajectory
 from uavsim.views.curves import thin
 from uavsim.views.figure import PHASES, make_room, sheet
 from uavsim.views.marks import Mark, flags, stack
@@ -330,6 +331,18 @@ def test_faults_and_what_was_noticed_of_them_are_marked() -> None:
     assert marks["total flagged"] == next(e["t"] for e in flight.events if e["event"] == "airspeed_fault")
     assert not any("icing" in name for name in marks)
     assert {mark.label for mark in record.milestones} - {mark.label for mark in record.marks} == set()
+
+
+@pytest.mark.parametrize(("tare", "words"), [("covered", "filtered (tared)"), ("none", "filtered")])
+def test_the_pressure_figure_says_tared_only_of_what_is(flight: Flight, tare: str, words: str) -> None:
+    scenario = {**flight.scenario, "air_data": {**flight.scenario["air_data"], "tare": tare}}
+    figure = pressure.draw(Record(dataclasses.replace(flight, scenario=scenario)))
+    assert figure is not None
+    labels = {str(line.get_label()) for line in figure.axes[0].lines}
+    assert words in labels
+    assert len({name for name in labels if name.startswith("filtered")}) == 1
+    notes = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert any("cover" in text for text in notes) is (tare == "covered")
 
 
 def test_missed_launches_have_no_latency_to_draw(tmp_path: Path) -> None:

@@ -28,9 +28,10 @@ def draw(record: Record) -> "Figure | None":
     judged = record.has("truth")
     reference = _reference(record)
     words = _words(record, reference)
+    untared = record.settings("air_data")["tare"] == "none"
     figure, axes = sheet(record.title, words, (1.0,) * 3, (1.0,) * (1 + judged), gap=(0.12, 0.22))
     for row, channel in zip(axes, _channels(record, reference), strict=True):
-        _values(row[0], channel)
+        _values(row[0], channel, "filtered" if untared else "filtered (tared)")
         if channel.true is not None:
             _errors(row[1], record, channel, channel.true)
     columns = list(zip(*axes, strict=True))
@@ -89,14 +90,14 @@ def _channels(record: Record, reference: float) -> list[_Channel]:
     return [_Channel(*named, raw, filtered, true) for named, raw, filtered, true in three if raw is not None]
 
 
-def _values(axes: "Axes", channel: _Channel) -> None:
+def _values(axes: "Axes", channel: _Channel, filtered: str) -> None:
     reference = channel.reference or 0.0
     curves.dots(axes, channel.raw[0], channel.raw[1] - reference, "raw readings")
     if channel.true is not None:
         curves.truth(axes, channel.true[0], channel.true[1] - reference)
     if channel.filtered is not None:
         t, p = channel.filtered
-        axes.plot(t, p - reference, color=BLUE, linewidth=0.8, label="filtered (tared)")
+        axes.plot(t, p - reference, color=BLUE, linewidth=0.8, label=filtered)
     label(axes, f"${channel.symbol}$, Pa" if channel.reference is None else f"${channel.symbol} - p_0$, Pa")
 
 
