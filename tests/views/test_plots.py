@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 import uavsim
@@ -327,7 +328,7 @@ def test_faults_and_what_was_noticed_of_them_are_marked() -> None:
     record = Record(flight)
     marks = {mark.label: mark.t for mark in record.milestones}
     assert marks["total port blocked"] == 6.0
-    assert marks["no longer total port blocked"] == 9.0
+    assert marks["end of blockage"] == 9.0
     assert marks["total flagged"] == next(e["t"] for e in flight.events if e["event"] == "airspeed_fault")
     assert not any("icing" in name for name in marks)
     assert {mark.label for mark in record.milestones} - {mark.label for mark in record.marks} == set()
@@ -343,6 +344,24 @@ def test_the_pressure_figure_says_tared_only_of_what_is(flight: Flight, tare: st
     assert len({name for name in labels if name.startswith("filtered")}) == 1
     notes = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert any("cover" in text for text in notes) is (tare == "covered")
+
+
+def test_the_labels_of_many_faults_stay_out_of_the_path_above(flight: Flight) -> None:
+    """The trajectory has room for six lines of labels; all the marks are in the other figures."""
+    kinds = enumerate(("blocked", "leak", "ice", "water"))
+    faults = [{"kind": kind, "start": 2.5 + 0.5 * i, "stop": 2.7 + 0.5 * i} for i, kind in kinds]
+    ports = {name: {**flight.scenario["air_data"][name], "faults": faults} for name in ("total_port", "static_port")}
+    scenario = {**flight.scenario, "air_data": {**flight.scenario["air_data"], **ports}}
+    found = {"t": 4.0, "event": "airspeed_fault", "channel": "total", "kind": "frozen"}
+    figure = trajectory.draw(Record(dataclasses.replace(flight, scenario=scenario, events=[*flight.events, found])))
+    assert figure is not None
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()  # which puts the axes' names in place
+    renderer = canvas.get_renderer()
+    path, angle = figure.axes[0], max(figure.axes, key=lambda axes: len(axes.texts))
+    drawn = {text.get_text(): text.get_window_extent(renderer) for text in angle.texts}
+    assert "total flagged" in drawn
+    assert max(box.y1 for box in drawn.values()) < path.xaxis.label.get_window_extent(renderer).y0 + 1.0
 
 
 def test_missed_launches_have_no_latency_to_draw(tmp_path: Path) -> None:

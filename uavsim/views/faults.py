@@ -10,14 +10,16 @@ PLACES = {
     ("air_data", "static"): "static sensor",
     ("accelerometer",): "accelerometer",
 }
+NOUNS = {"blocked": "blockage", "stuck": "stuck value", "invalid": "invalid value"}
 PARTICIPLES = {"leak": "leaking", "ice": "icing", "water": "wet", "spike": "spiked", "offset": "offset"}
 
 
 @dataclass(frozen=True, slots=True)
 class SetFault:
-    """A fault that the scenario sets, as "total port blocked"; from `start` to `stop`, s."""
+    """A fault that the scenario sets, as "total port blocked", a "blockage"; from `start` to `stop`, s."""
 
     name: str
+    noun: str
     start: float
     stop: float
 
@@ -31,9 +33,8 @@ def set_faults(scenario: dict[str, Any]) -> list[SetFault]:
             group = group.get(key) or {}
         for fault in group.get("faults") or ():
             kind = str(fault["kind"])
-            found.append(
-                SetFault(f"{place} {PARTICIPLES.get(kind, kind)}", float(fault["start"]), float(fault["stop"]))
-            )
+            name, noun = f"{place} {PARTICIPLES.get(kind, kind)}", NOUNS.get(kind, kind)
+            found.append(SetFault(name, noun, float(fault["start"]), float(fault["stop"])))
     return sorted(found, key=lambda fault: fault.start)
 
 

@@ -154,7 +154,7 @@ class Record:
             if fault.start < last:
                 found.setdefault(fault.name, (max(fault.start, first), BLACK))
                 if fault.stop < last:
-                    found.setdefault(f"no longer {fault.name}", (fault.stop, BLACK))
+                    found.setdefault(f"end of {fault.noun}", (fault.stop, BLACK))
         for event in self.flight.events:
             if words := noticed(event):
                 found.setdefault(words, (float(event["t"]), BLUE))

@@ -34,6 +34,7 @@ WIDTH, HEIGHT = 11.5, 8.6  # in
 ROWS = ((5.7, 2.0), (2.4, 2.0), (0.6, 1.6))  # in, bottom and height of each row: the first has its own axis of distance
 SUBTITLE = "height above the ground at the launcher over the way along the rail's heading"
 LEAST_SAVED = 1.0  # s that an enlargement must leave out to be worth drawing beside the whole
+LABELS = 6  # lines of them that the gap below the first row holds
 SLOWEST = 3.0  # m/s of true airspeed below which the angle of attack has no meaning
 EXAGGERATIONS = (1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50, 100)
 SHAPES = {"detected": "x", "rail exit": "s", "wing out": "D", "motor on": "o"}
@@ -82,8 +83,12 @@ def _over_time(column: "Sequence[Axes]", record: Record, stretch: Stretch) -> No
     column[0].tick_params(labelbottom=False)
     label(column[-1], x="time, s")
     more = ("detected", "wings commanded", "wing out") if stretch != record.span else ()
-    shown = record.named("true launch", "rail exit", "motor on", *more, *(name for _, name, _ in record.troubles))
-    flags(column, stack(column[0], shown))
+    placed = stack(column[0], record.named("true launch", "rail exit", "motor on", *more))
+    for _, name, _ in reversed(record.troubles):  # what was noticed on board before what was set
+        fuller = stack(column[0], [*(mark for mark, _, _ in placed), *record.named(name)])
+        if max((line for _, _, line in fuller), default=0) < LABELS:
+            placed = fuller
+    flags(column, placed)
 
 
 # -- path ------------------------------------------------------------------------------------------------------------
