@@ -429,7 +429,9 @@ class AidedFilter:
         """Blame the port for what its readings show, or the other: without it the total pressure does not fit."""
         if kind != "stuck" and self.static_watch.suspect:
             self._flag_static("frozen")
-        elif kind != "unfit" and not self.static_watch.repeating:
+        elif kind == "unfit" or self.static_watch.repeating:
+            return
+        elif kind != "frozen" or not (self.static_watch.doubtful and self.watch.port.unsure):
             self.watch.flag(kind, self.energy, self._density, self._gust)
             self.news.append((self._t, "airspeed_fault", "total", kind))
 

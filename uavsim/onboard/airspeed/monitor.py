@@ -23,6 +23,7 @@ from uavsim.onboard.airspeed.readmission import Readmission
 
 FROZEN, CALM = 24.0, 20.0  # nats, in declared gusts and without; in healthy flights below 14
 UNFIT = 4.0  # standard deviations by which a constant fits worse than noise allows: it is no constant
+SURE = 2.0  # times the level, from which on the total pressure is blamed whatever the static pressure does
 CERTAIN = 3.0  # times that, from which on it does not matter
 DRIFT, LEVEL = 0.5, 120.0  # κ, h: standard deviations
 CLIP = 3.0  # standard deviations
@@ -65,6 +66,11 @@ class PortMonitor:
         """Forget what has been seen."""
         self._up = self._down = 0.0
         self.frozen = FrozenTest(self._variance, self._rate, self._gusts)
+
+    @property
+    def unsure(self) -> bool:
+        """Whether a port that seems shut may still be right and the other wrong: in still air, and not for long."""
+        return not self._gusts and self.frozen.evidence < SURE * self._level
 
     def add(self, reading: float, innovation: float, nis: float, slide: float) -> str:
         """Take what a reading came to, after `frozen` has taken it.

@@ -36,6 +36,7 @@ SLOW, LEARNT = 10.0, 5.0  # s, over which what f_x is off by is averaged while g
 FINE = 6  # equal readings in a row that chance makes while noise is at least half a step
 LOST_SD = 0.2  # m/s², of that mean
 AGREE_SD = 5.0 / 3.0  # m/s; a port that drifted or leaked agrees within three of it, however little coasting knows
+DOUBTFUL = 4.0  # nats; less has a static port that lives in a climb, as a rule
 SHUT, SUSPECT = 14.0, 7.0  # nats, by which the static port is flagged, and if the total pressure seems to be wrong
 CLIMB_SD = 0.5  # m/s, of the climb by which a shut static port is left
 BIAS_SD = 0.1  # m/s², of the slow b
@@ -240,6 +241,11 @@ class StaticWatch:
     def repeating(self) -> bool:
         """Whether its readings are perhaps stuck: too early to blame anybody."""
         return self._back.repeating
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether it perhaps stands still: too early to blame the total pressure for that."""
+        return self._test.evidence > DOUBTFUL
 
     def take(self, t: float, reading: float, lift: float, density: float) -> str:
         """Take a reading; return what is wrong with the port, "frozen" or "stuck"; "" for nothing.
