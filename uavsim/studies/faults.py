@@ -264,6 +264,7 @@ def summarise(name: str, flown: list[FaultFlight]) -> Summary:
     case = CASES[name]
     delays = np.sort([f.delay for f in flown])
     flagged = [f for f in flown if f.delay < inf]
+    told = [f for f in flagged if f.coverage == f.coverage]  # without a static port no airspeed is valid
 
     def share(q: float) -> float:
         return float(delays[min(len(delays) - 1, int(q * len(delays)))])
@@ -278,7 +279,7 @@ def summarise(name: str, flown: list[FaultFlight]) -> Summary:
         within=sum(f.delay <= WITHIN for f in flown),
         seen=sum(f.unseen <= WITHIN for f in flown),
         delays=(share(0.5), share(0.99), float(delays[-1])),
-        coverage=float(np.nanmean([f.coverage for f in flagged])) if flagged else nan,
-        error=float(np.nanmax([f.error for f in flagged])) if flagged else nan,
+        coverage=float(np.mean([f.coverage for f in told])) if told else nan,
+        error=float(np.max([f.error for f in told])) if told else nan,
         valid=float(np.median([f.valid for f in flagged])) if flagged else nan,
     )
