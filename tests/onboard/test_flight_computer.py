@@ -420,6 +420,24 @@ def test_an_estimate_that_stays_invalid_is_given_up_for_a_safe_throttle_and_the_
         assert box.commands[1] == pytest.approx(wanted, abs=1e-9)
 
 
+def test_a_height_of_a_static_port_that_is_flagged_is_not_flown_on() -> None:
+    """Seed 1 of gusty with a static port that shuts in the climb went down to a height that was none."""
+    box = flying()
+    news: list[tuple[float, str, str, str]] = []
+    box._news = news
+    reading(box, 4.0, SETTINGS.airspeed - 1.0)
+    news.append((4.01, "airspeed_fault", "static", "frozen"))
+    lost(box, 4.01, 6.0, height=500.0, valid=False)
+    level = math.radians(SETTINGS.level_pitch_deg)
+    assert box.commands[1:3] == (pytest.approx(SETTINGS.safe_throttle), pytest.approx(level))
+    news.append((6.0, "airspeed_fault", "total", "frozen"))
+    reading(box, 6.0, 3.0, height=500.0, valid=False)
+    assert box.commands[2] == pytest.approx(level)
+    news.append((6.1, "airspeed_recovered", "static", ""))
+    reading(box, 6.1, 3.0, height=500.0, valid=False)
+    assert box.commands[2] == pytest.approx(-math.radians(SETTINGS.climb_pitch_deg))
+
+
 def test_an_estimate_that_comes_back_is_flown_on_as_before() -> None:
     """What the integral had gathered is there again, and nothing was added to it in the meantime."""
     box = flying()

@@ -19,6 +19,8 @@ themselves are stabilised inside the aircraft:
 
 An estimate that has not been valid for a while is not flown on: the throttle then goes to one that is safe at any
 pitch, safe level + K_c (pitch - level pitch), and the height is held on, until the estimate has been valid for as long.
+Nor is the height flown on of a static port that is flagged: the pitch is then that of level flight, at which the safe
+throttle climbs.
 
 Sees readings and time, never truth. Scalar, constant memory.
 """
@@ -213,6 +215,7 @@ class FlightComputer:
         self._trusted = True
         self._changed_since: float | None = None
         self._temperature = nan
+        self._height_known = True
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force, m/s^2, body axes."""
@@ -257,6 +260,8 @@ class FlightComputer:
     def _report(self) -> None:
         """Note what the estimator has found of its sensors: what was flagged and what was taken back."""
         for t, event, channel, kind in self._news:
+            if channel == "static":
+                self._height_known = event == "airspeed_recovered"
             self._note(t, event, channel=channel, **({"kind": kind} if kind else {}))
         self._news.clear()
 
@@ -348,8 +353,10 @@ class FlightComputer:
         if self._trusted and not valid:
             return
         error = self.settings.airspeed - airspeed if self._trusted else 0.0
-        height = airdata.hypsometric_height(p_static, self._reference_pressure, self._temperature)
-        pitch = self._pitch(error, height)
+        pitch = self._level_pitch
+        if self._height_known:
+            height = airdata.hypsometric_height(p_static, self._reference_pressure, self._temperature)
+            pitch = self._pitch(error, height)
         throttle = self._throttle(error, pitch, dt) if self._trusted else self._safe(pitch)
         wing, _, _, roll, engaged = self.commands
         self.commands = (wing, throttle, pitch, roll, engaged)
