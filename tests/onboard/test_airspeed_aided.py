@@ -396,6 +396,19 @@ def test_a_force_that_is_of_no_flight_ends_in_the_pressures_alone():
     assert row[5] == pytest.approx(STATIC, abs=1.0)
 
 
+def test_what_waits_of_a_filter_that_has_diverged_is_left():
+    """Its ports are not judged by an airspeed that was none: one event, and no exception."""
+    estimator = AidedFilter(SETTINGS, NOISE, COVERED)
+    fly(estimator, readings(until=6.0, noise=1.2))
+    estimator.tidy()
+    estimator.energy.v = 1e6
+    estimator.accelerometer(6.011, 0.0, 0.0, -9.8)
+    estimator.step(6.011, STATIC + 300.0, STATIC, KELVIN, 6.01, 6.01)
+    estimator.tidy()
+    assert not estimator.flying
+    assert [event[1:] for event in estimator.news] == [("airspeed_fault", "both", "diverged")]
+
+
 def test_memory_is_constant():
     estimator = AidedFilter(SETTINGS, NOISE, COVERED)
     for k in range(20_000):

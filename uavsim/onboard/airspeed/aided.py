@@ -149,6 +149,7 @@ class AidedFilter:
             if -FASTEST < energy.v < FASTEST and THINNEST < energy.p < THICKEST:
                 return estimate
             self.flying = False  # the force is of no flight: from here on by the pressures alone
+            self._total_seen = self._static_seen = None
             self.news.append((t, "airspeed_fault", "both", "diverged"))
         self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
         return self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
