@@ -122,6 +122,8 @@ class AidedFilter:
         self._tare = 0.0
         self._settled, self._patience, self._misses, self._push_variance = False, inf, 0, 0.0
         self._steady_from = inf
+        self._static_seen: tuple[float, float, float] | None = None  # Pa, its instant, s, mean of −f_z since, m/s²
+        self._total_seen: tuple[float, float] | None = None  # tared, Pa, and NIS
         self._begin_watch()
         self.news: list[tuple[float, str, str, str]] = []
         self._u = self._w = 0.0
@@ -181,8 +183,7 @@ class AidedFilter:
         self.watch = TotalWatch(self._settings.aided, self._total_variance, walk, usual[0])
         self.static_watch = StaticWatch(self._static_variance, walk, usual[1])
         self._lift = GRAVITY
-        self._static_seen: tuple[float, float, float] | None = None  # Pa, its instant, s, mean of −f_z since, m/s²
-        self._total_seen: tuple[float, float] | None = None  # tared, Pa, and NIS
+        self._static_seen = self._total_seen = None
 
     def unfolding(self, t: float) -> None:
         """For a while trust the integral of f_x less."""
