@@ -18,7 +18,7 @@ fly: $(VENV)/.fly
 	$(BIN)/uavsim fly catapult
 
 test: lint
-	$(BIN)/python -m pytest -q -m "not slow"
+	$(BIN)/python -m pytest -q -m "not slow" -n auto --dist worksteal
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
