@@ -8,6 +8,8 @@ import os
 from difflib import get_close_matches
 from pathlib import Path
 
+from uavsim.plants.airframe import Airframe, read_airframe
+
 _PACKAGE = Path(__file__).resolve().parent.parent
 
 
@@ -44,3 +46,19 @@ def find_aircraft(model: str) -> Path:
     near = get_close_matches(model, known, n=1, cutoff=0.3)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise ValueError(f"unknown aircraft {model!r}; {hint}packaged: {', '.join(known)}; or the path of a folder")
+
+
+def find_airframe(model: str) -> Airframe:
+    """Find an aircraft, as `find_aircraft` does, read its files and check them.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or its files are not an aircraft's and nothing else.
+    """
+    return model if isinstance(model, Airframe) else read_airframe(find_aircraft(model))
+
+
+def is_packaged(airframe: Airframe) -> bool:
+    """Whether an aircraft is one of the packaged ones."""
+    return Path(airframe).parent == hangar().resolve()

@@ -12,10 +12,13 @@ The only module that imports jsbsim. Facts it rests on:
 * Writing a property that does not exist would silently create it, so every name is checked against the catalogue.
 """
 
+import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
-from math import isfinite, pi, radians
+from math import inf, isfinite, pi, radians
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -23,6 +26,8 @@ from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
 from numpy.typing import NDArray
 
 from uavsim import airdata
+from uavsim.plants.airframe import Airframe
+from uavsim.plants.airframe.figures import of_inertia
 from uavsim.plants.columns import (
     AIR,
     AIR_OFFSET,
@@ -46,7 +51,7 @@ from uavsim.plants.columns import (
     SLUG_FT2,
     WING,
 )
-from uavsim.plants.hangar import find_aircraft
+from uavsim.plants.hangar import find_airframe, is_packaged
 from uavsim.plants.plant import Commands
 from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
@@ -63,7 +68,8 @@ Array = NDArray[np.float64]
 class JsbsimSettings:
     """Everything that a JSBSim flight needs: `step_rate` in Hz, the seed of its turbulence, the drawn launch.
 
-    `accelerometer_position` is from the aircraft's EYEPOINT, body axes forward-right-down, m.
+    `accelerometer_position` is from the aircraft's EYEPOINT, body axes forward-right-down, m. `scratch` is the folder
+    in which an aircraft of one's own is laid out for JSBSim while it is read; None: the system's for temporary files.
     """
 
     aircraft: AircraftSettings
@@ -75,6 +81,7 @@ class JsbsimSettings:
     random_seed: int = 1
     step_rate: float = 1000.0
     accelerometer_position: Vector = (0.0, 0.0, 0.0)
+    scratch: Path | None = None
 
 
 class _Silence(FGLogger):
@@ -102,6 +109,8 @@ class JsbsimPlant:
         Whether a shoe is still on the rail.
     aloft
         Whether the altitude is a number and above the ground.
+    failure
+        What JSBSim said when it could not go on; empty as long as it can.
 
     Raises
     ------
@@ -144,6 +153,7 @@ class JsbsimPlant:
         self._attended = True
         self._datum = self.row
         self.aloft = True
+        self.failure = ""
         self._settle()
         self._buffer = bytearray((round(settings.duration * settings.step_rate) + 2) * ROW.size)
         self._size = 0
@@ -155,22 +165,42 @@ class JsbsimPlant:
     # -- setting up --------------------------------------------------------------------------------------------------
 
     def _load(self, aircraft: AircraftSettings) -> FGFDMExec:
-        folder = find_aircraft(aircraft.model)
-        set_logger(_Silence())
-        fdm = FGFDMExec(None)
-        fdm.set_debug_level(0)
-        try:
-            loaded = fdm.load_model_with_paths(
-                folder.name, str(folder.parent), str(folder / "engine"), str(folder / "systems"), True
-            )
-        except BaseError as error:
-            raise ValueError(f"aircraft.model: {error}") from error
-        if not loaded:
-            raise ValueError(f"aircraft.model: JSBSim cannot load {folder / (folder.name + '.xml')}")
+        airframe = find_airframe(aircraft.model)
+        if is_packaged(airframe):
+            fdm = self._opened(airframe, Path(airframe))
+        else:  # what JSBSim opens is what was checked, whatever becomes of the original
+            with TemporaryDirectory(prefix=".uavsim-", dir=self.settings.scratch) as place:
+                fdm = self._opened(airframe, airframe.write(Path(place)))
         fdm.disable_output()
         fdm.set_dt(self.dt)
         for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
             fdm.set_property_value(f"simulation/integrator/{name}/rotational", 3.0)
+        return fdm
+
+    def _opened(self, airframe: Airframe, folder: Path) -> FGFDMExec:
+        """Let JSBSim read an aircraft that was checked."""
+        set_logger(_Silence())
+        fdm = FGFDMExec(None)
+        fdm.set_debug_level(0)
+        for name in airframe.checked.early:
+            fdm.set_property_value(name, 0.0)
+        try:
+            loaded = fdm.load_model_with_paths(
+                folder.name, str(folder.parent), str(folder / "engine"), str(folder / "systems"), True
+            )
+        except (BaseError, RuntimeError) as error:
+            _leave_up(fdm)
+            raise ValueError(f"aircraft.model: {str(error).replace(str(folder), str(airframe))}") from error
+        if not loaded:
+            raise ValueError(f"aircraft.model: JSBSim cannot load {airframe}/{folder.name}.xml")
+        manager = fdm.get_property_manager()
+        missing = [name for name in airframe.checked.reads if not manager.hasNode(name)]
+        if missing:
+            _leave_up(fdm)
+            raise ValueError(
+                f"aircraft.model: {airframe}: {airframe.checked.reads[missing[0]]}: {missing[0]!r} is a property that "
+                'neither JSBSim nor the aircraft has; declare it as <property value="0">'
+            )
         return fdm
 
     def _node(self, name: str) -> FGPropertyNode:
@@ -203,10 +233,12 @@ class JsbsimPlant:
         self._apply(s.aircraft.properties)
         try:
             started = self._fdm.run_ic()
-        except BaseError as error:  # a property that the aircraft's functions name and nothing sets
+        except (BaseError, RuntimeError) as error:
+            _leave_up(self._fdm)
             raise ValueError(f"aircraft.model: {error}") from error
         if not started:
             raise ValueError("aircraft.model: JSBSim cannot start it from rest on the rail")
+        self._check_body()
         towards = radians(air.wind_from_deg) + pi
         self._set("atmosphere/wind-north-fps", air.wind_speed * np.cos(towards) / FT)
         self._set("atmosphere/wind-east-fps", air.wind_speed * np.sin(towards) / FT)
@@ -214,6 +246,18 @@ class JsbsimPlant:
             self._set("atmosphere/turb-type", 3.0)  # MIL-F-8785C Dryden
             self._set("atmosphere/turbulence/milspec/windspeed_at_20ft_AGL-fps", air.turbulence_wind_20ft / FT)
             self._set("atmosphere/turbulence/milspec/severity", float(air.turbulence_severity))
+
+    def _check_body(self) -> None:
+        """Refuse a body that cannot be, as JSBSim has it with all that was set: mass, inertia, size."""
+        mass = self._value("inertia/mass-slugs") * SLUG
+        moments = [
+            self._value(f"inertia/i{axes}-slugs_ft2") * SLUG_FT2 for axes in ("xx", "yy", "zz", "xy", "xz", "yz")
+        ]
+        sizes = [self._value(f"metrics/{name}") for name in ("bw-ft", "cbarw-ft", "Sw-sqft")]
+        if not (0.0 < mass < inf and all(map(isfinite, moments)) and all(0.0 < size < inf for size in sizes)):
+            raise ValueError("aircraft.model: its mass, span, chord and wing area must be above 0, its inertia finite")
+        if problem := of_inertia(*moments):
+            raise ValueError(f"aircraft.model: {problem}")
 
     def _apply(self, properties: dict[str, float]) -> None:
         for name, value in properties.items():
@@ -251,7 +295,11 @@ class JsbsimPlant:
         steps = round(SETTLING_TIME * self.settings.step_rate)
         for k in range(-steps, 0):
             self._hold(k * self.dt)
-            self._run()
+            try:
+                self._run()
+            except (BaseError, RuntimeError) as error:
+                _leave_up(self._fdm)
+                raise ValueError(f"aircraft.model: {error}") from error
             self.row = self._read()
 
     # -- each step ---------------------------------------------------------------------------------------------------
@@ -265,12 +313,16 @@ class JsbsimPlant:
         """Advance by one step and record it."""
         if self._attended:
             self._attend()
-        self._run()
+        try:
+            self._run()
+        except (BaseError, RuntimeError) as error:  # of the aircraft's own functions
+            _leave_up(self._fdm)
+            self.failure = str(error)
         self.k += 1
         self.t = self.k / self.settings.step_rate
         self.row = row = self._read()
         self._record(row)
-        self.aloft = row[ALTITUDE] > self._ground  # false too for NaN
+        self.aloft = row[ALTITUDE] > self._ground and not self.failure  # false too for NaN
 
     def step_unrecorded(self) -> None:
         """Advance by one step of bare JSBSim: the measure that recording is compared with."""
@@ -410,8 +462,8 @@ class JsbsimPlant:
 
     @property
     def finite(self) -> bool:
-        """Whether the whole state is finite."""
-        return all(map(isfinite, self.row))
+        """Whether the whole state is finite, and JSBSim could work it out."""
+        return all(map(isfinite, self.row)) and not self.failure
 
     # -- the record --------------------------------------------------------------------------------------------------
 
@@ -437,6 +489,11 @@ class JsbsimPlant:
         if left.size:
             travel[left[0] :] = travel[left[0]]
         return travel
+
+
+def _leave_up(fdm: FGFDMExec) -> None:
+    """Never take this down: JSBSim works its functions out once more then, and what fails there ends the process."""
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(fdm))
 
 
 def _continuous(angle: Array) -> Array:

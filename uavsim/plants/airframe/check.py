@@ -1,0 +1,133 @@
+"""Whether an aircraft's files describe an aircraft and nothing else, before JSBSim opens them.
+
+A file is reached only by being named, lies in the aircraft's folder, and is read against the grammar (`document`); then
+what a grammar cannot say: tables, masses and sizes, functions that would call themselves.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from uavsim.plants.airframe import circles, figures
+from uavsim.plants.airframe.document import check_document
+from uavsim.plants.airframe.engines import check_engine
+from uavsim.plants.airframe.grammar import ENGINES, THRUSTERS
+from uavsim.plants.airframe.markup import Element, in_file, parse
+from uavsim.plants.airframe.properties import plain
+
+MOST_FILES = 100
+MOST_ELEMENTS = 40_000  # of all files: what a step costs grows with them
+
+Reader = Callable[[str], bytes | None]
+"""Returns what stands in a file, by its path below the aircraft's folder with slashes; None if there is none."""
+
+_EARLY = frozenset(f"{end}_{what}" for end in ("source", "target") for what in ("angle", "latitude", "longitude"))
+"""What an angle or a waypoint reads: JSBSim takes it for there, and ends the process in the air if it is not."""
+_SYSTEMS = frozenset({"system", "autopilot", "flight_control"})
+_PLACES = {
+    **dict.fromkeys(_SYSTEMS, ("", "Systems/", "systems/")),
+    **dict.fromkeys(("engine", "thruster"), ("", "Engines/", "engine/")),
+}
+"""Where JSBSim looks for what an element names, in its order."""
+_ROOTS = dict.fromkeys(_SYSTEMS, _SYSTEMS) | {"engine": frozenset(ENGINES), "thruster": frozenset(THRUSTERS)}
+"""What the file that an element names must hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """Files that were checked.
+
+    Attributes
+    ----------
+    files
+        Those that belong to the aircraft, by their path below the folder, as they were read.
+    reads
+        The properties that they read, each with a file and line.
+    early
+        Those of them that JSBSim wants to be there while it reads the files, in whatever order.
+    """
+
+    files: dict[str, bytes]
+    reads: dict[str, str]
+    early: frozenset[str]
+
+
+def check_files(name: str, read: Reader) -> Checked:
+    """Check an aircraft.
+
+    Parameters
+    ----------
+    name
+        Of the aircraft: its main file is ``NAME.xml``.
+    read
+        Reads a file of its folder.
+
+    Raises
+    ------
+    ValueError
+        One line that names file, line, element and what is allowed.
+    """
+    files: dict[str, bytes] = {}
+    reads: dict[str, str] = {}
+    early: set[str] = set()
+    calls: dict[str, set[str]] = {}
+    waiting = [(f"{name}.xml", frozenset({"fdm_config"}))]
+    elements = 0
+    while waiting:
+        path, roots = waiting.pop()
+        if path in files:
+            continue
+        content = read(path)
+        if content is None:
+            raise ValueError(f"{path}: there is no such file")
+        with in_file(path):
+            root, read_here = _checked(content, roots, is_named=bool(files))
+            files[path] = content
+            reads = {property_: f"{path}: line {line}" for property_, line in read_here.items()} | reads
+            elements += sum(1 for _ in root.all())
+            if len(files) > MOST_FILES or elements > MOST_ELEMENTS:
+                raise ValueError(f"more than {MOST_FILES} files or {MOST_ELEMENTS} elements in all")
+            early |= {plain(element.text) for element in root.all() if element.tag in _EARLY}
+            for function, needed in circles.called(root).items():
+                if function in calls:
+                    raise ValueError(f"the name {function[:80]!r} is given to two functions or tables")
+                calls[function] = needed
+            waiting += [(_place(element, read), _ROOTS[element.tag]) for element in root.all() if _names(element)]
+    if found := circles.circle(calls):
+        raise ValueError(f"{name}.xml: the function {found!r} is worked out from itself")
+    return Checked(files, reads, frozenset(early))
+
+
+def _checked(content: bytes, roots: frozenset[str], *, is_named: bool) -> tuple[Element, dict[str, int]]:
+    root = parse(content)
+    if root.tag not in roots:
+        raise ValueError(f"line {root.line}: <{root.tag[:40]}>: must be <{'> or <'.join(sorted(roots))}>")
+    reads = check_document(root, is_named=is_named)
+    check_engine(root)
+    if root.tag == "fdm_config":
+        figures.check_metrics(_only(root, "metrics"))
+        figures.check_mass(_only(root, "mass_balance"))
+    return root, reads
+
+
+def _only(root: Element, tag: str) -> Element:
+    found = root.find(tag)
+    assert found is not None  # the grammar needs it
+    return found
+
+
+def _names(element: Element) -> bool:
+    return "file" in element.attributes
+
+
+def _place(element: Element, read: Reader) -> str:
+    """Return the file that an element names, where JSBSim finds it first."""
+    stem = element.attributes["file"].strip()
+    stem = stem if stem.endswith(".xml") else f"{stem}.xml"
+    for place in _PLACES[element.tag]:
+        if read(place + stem) is not None:
+            return place + stem
+    searched = " or ".join(place for place in _PLACES[element.tag] if place)
+    raise ValueError(
+        f"line {element.line}: <{element.tag}>: the file {stem[:80]!r} is not in the aircraft's folder: copy it into "
+        f"{searched} there"
+    )

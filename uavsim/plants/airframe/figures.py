@@ -1,0 +1,89 @@
+"""Whether a mass, an inertia and a size can be: SI, by the units that the file states.
+
+A rigid body has m > 0 and a positive definite tensor of inertia whose principal moments obey I₁ + I₂ ≥ I₃ (any
+textbook of mechanics). The bounds hold whatever flies, from a palm-sized drone to the largest aeroplane.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from uavsim.plants.airframe.markup import Element, MarkupError
+from uavsim.plants.airframe.tables import number
+
+_FT, _LB, _SLUG = 0.3048, 0.45359237, 14.59390294
+LENGTH: Mapping[str, float] = {"FT": _FT, "M": 1.0, "IN": _FT / 12.0}
+AREA: Mapping[str, float] = {"FT2": _FT**2, "M2": 1.0}
+MASS: Mapping[str, float] = {"LBS": _LB, "KG": 1.0, "SLUG": _SLUG}
+INERTIA: Mapping[str, float] = {"SLUG*FT2": _SLUG * _FT**2, "KG*M2": 1.0}
+# SI a unit; the first is what JSBSim takes where none is stated
+
+METRICS = {
+    "wingspan": (LENGTH, 0.01, 200.0, "m"),
+    "chord": (LENGTH, 0.001, 100.0, "m"),
+    "wingarea": (AREA, 1e-5, 1e4, "m²"),
+}
+LIGHTEST, HEAVIEST = 1e-3, 1e6  # kg
+LEAST_INERTIA = 1e-9  # kg m²
+REACH = 100.0  # m, beyond which no part of an aircraft lies
+ROUNDING = 0.02  # of the sum, by which two moments may fall short of the third: figures are rounded
+
+
+def check_metrics(metrics: Element) -> None:
+    """Refuse sizes that cannot be."""
+    for tag, (unit, least, greatest, shown) in METRICS.items():
+        element = metrics.find(tag)
+        assert element is not None  # the grammar needs it
+        _bounded(element, _si(element, unit), least, greatest, shown)
+
+
+def check_mass(balance: Element) -> None:
+    """Refuse masses and inertias that no body has."""
+    empty = balance.find("emptywt")
+    assert empty is not None
+    _bounded(empty, _si(empty, MASS), LIGHTEST, HEAVIEST, "kg")
+    for point in balance.children:
+        if point.tag == "pointmass" and (weight := point.find("weight")) is not None:
+            _bounded(weight, _si(weight, MASS), 0.0, HEAVIEST, "kg")
+    moments = {tag: _of(balance, tag) for tag in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")}
+    for tag in ("ixx", "iyy", "izz"):
+        element = balance.find(tag)
+        assert element is not None
+        _bounded(element, moments[tag], LEAST_INERTIA, HEAVIEST * REACH**2, "kg m²")
+    problem = of_inertia(*moments.values())
+    if problem:
+        raise MarkupError(f"<mass_balance>: {problem}", balance.line)
+
+
+def of_inertia(ixx: float, iyy: float, izz: float, ixy: float, ixz: float, iyz: float) -> str:
+    """Say why no body has this tensor of inertia, kg m²; nothing if one has."""
+    least, middle, greatest = np.linalg.eigvalsh([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+    if least <= 0.0:
+        return "the products of inertia are too great for the moments: no body has them"
+    if least + middle < greatest * (1.0 - ROUNDING):
+        return (
+            f"moments of inertia {least:.3g}, {middle:.3g}, {greatest:.3g} kg m²: two must add up to the third at least"
+        )
+    return ""
+
+
+def _of(balance: Element, tag: str) -> float:
+    element = balance.find(tag)
+    return 0.0 if element is None else _si(element, INERTIA)
+
+
+def _si(element: Element, units: Mapping[str, float]) -> float:
+    """Value of an element in SI."""
+    stated = element.attributes.get("unit", next(iter(units)))
+    if stated not in units:
+        raise MarkupError(f"<{element.tag}>: unit {stated!r} does not fit; allowed: {', '.join(units)}", element.line)
+    value = number(element.text)
+    assert value is not None  # the grammar has seen to it
+    return value * units[stated]
+
+
+def _bounded(element: Element, value: float, least: float, greatest: float, unit: str) -> None:
+    if not least <= value <= greatest:
+        raise MarkupError(
+            f"<{element.tag}>: is {value:.4g} {unit}; from {least:g} to {greatest:g} {unit} are allowed", element.line
+        )
