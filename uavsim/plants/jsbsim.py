@@ -165,42 +165,10 @@ class JsbsimPlant:
     # -- setting up --------------------------------------------------------------------------------------------------
 
     def _load(self, aircraft: AircraftSettings) -> FGFDMExec:
-        airframe = find_airframe(aircraft.model)
-        if is_packaged(airframe):
-            fdm = self._opened(airframe, Path(airframe))
-        else:  # what JSBSim opens is what was checked, whatever becomes of the original
-            with TemporaryDirectory(prefix=".uavsim-", dir=self.settings.scratch) as place:
-                fdm = self._opened(airframe, airframe.write(Path(place)))
-        fdm.disable_output()
+        fdm = load_airframe(find_airframe(aircraft.model), self.settings.scratch)
         fdm.set_dt(self.dt)
         for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
             fdm.set_property_value(f"simulation/integrator/{name}/rotational", 3.0)
-        return fdm
-
-    def _opened(self, airframe: Airframe, folder: Path) -> FGFDMExec:
-        """Let JSBSim read an aircraft that was checked."""
-        set_logger(_Silence())
-        fdm = FGFDMExec(None)
-        fdm.set_debug_level(0)
-        for name in airframe.checked.early:
-            fdm.set_property_value(name, 0.0)
-        try:
-            loaded = fdm.load_model_with_paths(
-                folder.name, str(folder.parent), str(folder / "engine"), str(folder / "systems"), True
-            )
-        except (BaseError, RuntimeError) as error:
-            _leave_up(fdm)
-            raise ValueError(f"aircraft.model: {str(error).replace(str(folder), str(airframe))}") from error
-        if not loaded:
-            raise ValueError(f"aircraft.model: JSBSim cannot load {airframe}/{folder.name}.xml")
-        manager = fdm.get_property_manager()
-        missing = [name for name in airframe.checked.reads if not manager.hasNode(name)]
-        if missing:
-            _leave_up(fdm)
-            raise ValueError(
-                f"aircraft.model: {airframe}: {airframe.checked.reads[missing[0]]}: {missing[0]!r} is a property that "
-                'neither JSBSim nor the aircraft has; declare it as <property value="0">'
-            )
         return fdm
 
     def _node(self, name: str) -> FGPropertyNode:
@@ -235,7 +203,7 @@ class JsbsimPlant:
             started = self._fdm.run_ic()
         except (BaseError, RuntimeError) as error:
             _leave_up(self._fdm)
-            raise ValueError(f"aircraft.model: {error}") from error
+            raise ValueError(f"aircraft.model: {_said(error)}") from error
         if not started:
             raise ValueError("aircraft.model: JSBSim cannot start it from rest on the rail")
         self._check_body()
@@ -299,7 +267,7 @@ class JsbsimPlant:
                 self._run()
             except (BaseError, RuntimeError) as error:
                 _leave_up(self._fdm)
-                raise ValueError(f"aircraft.model: {error}") from error
+                raise ValueError(f"aircraft.model: {_said(error)}") from error
             self.row = self._read()
 
     # -- each step ---------------------------------------------------------------------------------------------------
@@ -317,7 +285,7 @@ class JsbsimPlant:
             self._run()
         except (BaseError, RuntimeError) as error:  # of the aircraft's own functions
             _leave_up(self._fdm)
-            self.failure = str(error)
+            self.failure = _said(error)
         self.k += 1
         self.t = self.k / self.settings.step_rate
         self.row = row = self._read()
@@ -489,6 +457,60 @@ class JsbsimPlant:
         if left.size:
             travel[left[0] :] = travel[left[0]]
         return travel
+
+
+def load_airframe(airframe: Airframe, scratch: Path | None = None) -> FGFDMExec:
+    """Let JSBSim read an aircraft that was checked: one of one's own from a copy, whatever becomes of the original.
+
+    Parameters
+    ----------
+    airframe
+        The aircraft.
+    scratch
+        Folder in which the copy stands while it is read; None: the system's for temporary files.
+
+    Raises
+    ------
+    ValueError
+        One line: what JSBSim says of it, or which property it reads that nobody has.
+    """
+    if is_packaged(airframe):
+        return _opened(airframe, Path(airframe))
+    with TemporaryDirectory(prefix=".uavsim-", dir=scratch) as place:
+        return _opened(airframe, airframe.write(Path(place)))
+
+
+def _opened(airframe: Airframe, folder: Path) -> FGFDMExec:
+    set_logger(_Silence())
+    fdm = FGFDMExec(None)
+    fdm.set_debug_level(0)
+    for name in airframe.checked.early:
+        fdm.set_property_value(name, 0.0)
+    try:
+        loaded = fdm.load_model_with_paths(
+            folder.name, str(folder.parent), str(folder / "engine"), str(folder / "systems"), True
+        )
+    except (BaseError, RuntimeError) as error:
+        _leave_up(fdm)
+        raise ValueError(f"aircraft.model: {_said(error).replace(str(folder), str(airframe))}") from error
+    if not loaded:
+        _leave_up(fdm)
+        raise ValueError(f"aircraft.model: JSBSim cannot load {airframe}/{folder.name}.xml")
+    fdm.disable_output()
+    manager = fdm.get_property_manager()
+    missing = [name for name in airframe.checked.reads if not manager.hasNode(name)]
+    if missing:
+        _leave_up(fdm)
+        raise ValueError(
+            f"aircraft.model: {airframe}: {airframe.checked.reads[missing[0]]}: {missing[0]!r} is a property that "
+            'neither JSBSim nor the aircraft has; declare it as <property value="0">'
+        )
+    return fdm
+
+
+def _said(error: Exception) -> str:
+    """What JSBSim says, in one line."""
+    return " ".join(str(error).split())
 
 
 def _leave_up(fdm: FGFDMExec) -> None:
