@@ -37,7 +37,8 @@ ATTRIBUTES = [
 ]
 
 
-OF_FLIGHTGEAR = ("sim/model/pushback/position-norm", "sim/model/pushback/target-speed-fps")
+_PUSHBACK = ("position-norm", "target-speed-fps", "kp", "ki", "kd", "enabled")
+OF_FLIGHTGEAR = tuple(f"sim/model/pushback/{name}" for name in _PUSHBACK)
 """Properties that another program gives to some of JSBSim's aircraft."""
 
 

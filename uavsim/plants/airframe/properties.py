@@ -33,7 +33,7 @@ TAKEN = {
         "elevator-pos-rad flap-cmd-norm flap-pos-deg flap-pos-norm flap-pos-rad left-aileron-pos-deg "
         "left-aileron-pos-norm left-aileron-pos-rad left-brake-cmd-norm mag-elevator-pos-rad "
         "mag-left-aileron-pos-rad mag-right-aileron-pos-rad mag-rudder-pos-rad mag-speedbrake-pos-rad "
-        "mag-spoiler-pos-rad parachute_reef_pos_norm pitch-trim-cmd-norm right-aileron-pos-deg "
+        "mag-spoiler-pos-rad pitch-trim-cmd-norm right-aileron-pos-deg "
         "right-aileron-pos-norm right-aileron-pos-rad right-brake-cmd-norm roll-trim-cmd-norm rudder-cmd-norm "
         "rudder-pos-deg rudder-pos-norm rudder-pos-rad speedbrake-cmd-norm speedbrake-pos-deg speedbrake-pos-norm "
         "speedbrake-pos-rad spoiler-cmd-norm spoiler-pos-deg spoiler-pos-norm spoiler-pos-rad steer-cmd-norm "
