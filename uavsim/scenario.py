@@ -8,10 +8,8 @@ cannot tell one by one is checked here.
 import math
 import os
 import re
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
@@ -20,6 +18,8 @@ import numpy as np
 from annotated_types import Interval
 
 from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings, presets
+from sensors.choice import nearest, shown
+from sensors.data_files import parse_toml, read_toml
 from sensors.settings import Fault, PortFault
 from sensors.vibration import check as check_vibration
 from uavsim import settings
@@ -42,7 +42,6 @@ PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
 PLANT_STEP = 1e-3  # s
 NAME = r"[^\W_][\w .+-]{0,99}"
-LARGEST_FILE = 1_000_000  # bytes; the largest packaged scenario has a thousandth of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,36 +241,25 @@ def _find(source: str | Path) -> Path:
         return path
     if "/" in name or name.endswith(".toml"):
         raise ValueError(f"{name}: there is no such file")
-    near = get_close_matches(name, packaged_names(), n=1, cutoff=0.3)
-    hint = f"did you mean {near[0]!r}? " if near else ""
+    near = nearest(name, packaged_names(), cutoff=0.3)
+    hint = f"did you mean {near!r}? " if near else ""
     raise ValueError(
-        f"unknown scenario {name!r}; {hint}packaged: {', '.join(packaged_names())}; or the path of a TOML file"
+        f"unknown scenario {shown(name)}; {hint}packaged: {', '.join(packaged_names())}; or the path of a TOML file"
     )
 
 
 def _parsed(path: Path) -> dict[str, Any]:
     try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
-    if len(content) > LARGEST_FILE:
-        raise ValueError(f"{path}: not a scenario: larger than {LARGEST_FILE} bytes")
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: not a TOML file: it is not text in UTF-8") from None
-    except ValueError as error:  # TOMLDecodeError, and Python's own on numbers of thousands of digits
-        raise ValueError(f"{path}: not valid TOML: {error}") from None
-    except RecursionError:
-        raise ValueError(f"{path}: not a scenario: nested too deep") from None
+        return read_toml(path)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
 
 
 def _apply(values: dict[str, Any], override: str) -> str:
     """Change one key; return it."""
     key, equals, text = (part.strip() for part in override.partition("="))
     if not equals or not key:
-        raise ValueError(f"--set {override!r}: give it as KEY=VALUE")
+        raise ValueError(f"--set {shown(override)}: give it as KEY=VALUE")
     free = key.startswith(PROPERTIES)  # what follows is JSBSim's name, which holds slashes and may hold dots
     if not free and key not in keys():
         raise ValueError(f"--set: {settings.unknown(Scenario, key).problem}")
@@ -288,8 +276,8 @@ def _apply(values: dict[str, Any], override: str) -> str:
 def _value(text: str) -> Any:
     """Read a value as TOML has it; what is none is text."""
     try:
-        found = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
+        found = parse_toml(f"value = {text}")
+    except ValueError:
         return text
     return found["value"] if list(found) == ["value"] else text
 
@@ -491,9 +479,9 @@ def _check_requirements(s: Scenario) -> None:
     for i, r in enumerate(s.requirements):
         where = f"requirements[{i}]"
         if r.key not in figures():
-            near = get_close_matches(r.key, figures(), n=1, cutoff=0.5)
-            hint = f"; did you mean {near[0]!r}?" if near else "; see score.json for those there are"
-            raise SettingError(f"{where}.key = {r.key!r}: is no number of the score{hint}", "requirements")
+            near = nearest(r.key, figures())
+            hint = f"; did you mean {near!r}?" if near else "; see score.json for those there are"
+            raise SettingError(f"{where}.key = {shown(r.key)}: is no number of the score{hint}", "requirements")
         if r.minimum is not None and r.maximum is not None and r.minimum > r.maximum:
             raise SettingError(f"{where} ({r.key}): minimum is above maximum", "requirements")
 

@@ -6,15 +6,15 @@ to tuples. Whatever is wrong becomes one line that names the key, the value and 
 """
 
 import json
-import reprlib
 import types
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
-from difflib import get_close_matches
 from functools import cache
 from math import isfinite
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from sensors.choice import nearest, shown
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -25,8 +25,6 @@ Path = tuple[Any, ...]
 
 LARGEST = 2**63 - 1  # TOML 1.0: whole numbers have 64 bits
 
-_SHORT = reprlib.Repr()
-_SHORT.maxstring = _SHORT.maxother = 60
 _WORDS = {float: "a number", int: "a whole number", str: "text", bool: "true or false"}
 
 
@@ -106,10 +104,10 @@ def unknown(kind: type, key: str) -> SettingError:
         return SettingError(f"{key} is a group; its keys are {', '.join(inside)}", key)
     last = key.rpartition(".")[2]
     names = {k if "." in key else k.rpartition(".")[2]: k for k in reversed(known)}
-    near = [names[match] for match in get_close_matches(key, names, n=1, cutoff=0.5)]
-    near = near or [k for k in known if k.rpartition(".")[2] == last][:1]  # a right name in a wrong group
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(hints(kind))}"
-    return SettingError(f"unknown key {_shown(key)}; {hint}", key)
+    near = names.get(nearest(key, names) or "")
+    near = near or next((k for k in known if k.rpartition(".")[2] == last), None)  # a right name in a wrong group
+    hint = f"did you mean {near!r}?" if near else f"there are {', '.join(hints(kind))}"
+    return SettingError(f"unknown key {shown(key)}; {hint}", key)
 
 
 # -- from the outside in ---------------------------------------------------------------------------------------------
@@ -136,7 +134,7 @@ def _check_keys(values: Mapping[str, Any], kind: Any, root: type, prefix: str) -
         entry = _entry(hint)
         if _is_group(hint):
             if not isinstance(value, Mapping):
-                raise SettingError(f"{key} = {_shown(value)}: must be a group of keys, not a value", key)
+                raise SettingError(f"{key} = {shown(value)}: must be a group of keys, not a value", key)
             _check_keys(value, hint, root, f"{key}.")
         elif _is_group(entry) and isinstance(value, list | tuple):
             for i, item in enumerate(value):
@@ -147,11 +145,11 @@ def _check_entry(item: Any, kind: Any, key: str, where: str) -> None:
     """Refuse keys that nobody declared in one of a list of groups."""
     names = list(hints(kind))
     if not isinstance(item, Mapping):
-        raise SettingError(f"{where} = {_shown(item)}: must be {_allowed(kind)}", key)
+        raise SettingError(f"{where} = {shown(item)}: must be {_allowed(kind)}", key)
     for name in item:
         if name not in names:
-            near = get_close_matches(str(name), names, n=1, cutoff=0.0)[0]
-            raise SettingError(f"unknown key {_shown(name)} in {where}; did you mean {near!r}?", key)
+            near = nearest(str(name), names, cutoff=0.0)
+            raise SettingError(f"unknown key {shown(name)} in {where}; did you mean {near!r}?", key)
 
 
 def _plain(value: Any, path: Path) -> Any:
@@ -171,7 +169,7 @@ def _plain(value: Any, path: Path) -> Any:
 
 def _name(name: Any, path: Path) -> str:
     if not _is_text(name):
-        raise SettingError(f"{_shown(name)} is no name", ".".join(map(str, path)))
+        raise SettingError(f"{shown(name)} is no name", ".".join(map(str, path)))
     return str(name)
 
 
@@ -200,20 +198,12 @@ def _blame(kind: Any, values: Any, path: Path) -> SettingError:
         else:
             break
         value = value[part]
-    return SettingError(f"{key} = {_shown(value)}: must be {_allowed(hint)}{_nearest(hint, value)}", top)
-
-
-def _shown(value: Any) -> str:
-    """Return the value, shortened; repr of a whole number of thousands of digits is refused by Python."""
-    try:
-        return _SHORT.repr(value)
-    except ValueError:
-        return "a number of thousands of digits"
+    return SettingError(f"{key} = {shown(value)}: must be {_allowed(hint)}{_nearest(hint, value)}", top)
 
 
 def _nearest(hint: Any, value: Any) -> str:
-    near = get_close_matches(value, list(_choices(hint)), n=1, cutoff=0.5) if isinstance(value, str) else []
-    return f"; did you mean {near[0]!r}?" if near else ""
+    near = nearest(value, _choices(hint)) if isinstance(value, str) else None
+    return f"; did you mean {near!r}?" if near else ""
 
 
 def _choices(hint: Any) -> Iterator[str]:

@@ -1,7 +1,6 @@
 """`uavsim roc`: operating curves of launch detectors on the same signals."""
 
 from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -88,6 +87,7 @@ def roc(
 
 def kinds_of(text: str | None) -> list[str]:
     """Kinds of detector from `A,B`; all of them without it."""
+    from sensors.choice import nearest, shown
     from uavsim.studies.operating import KINDS
 
     if text is None:
@@ -95,9 +95,9 @@ def kinds_of(text: str | None) -> list[str]:
     kinds = [part.strip() for part in text.split(",")]
     for kind in kinds:
         if kind not in KINDS:
-            near = get_close_matches(kind, KINDS, n=1, cutoff=0.4)
-            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(KINDS)}"
-            raise typer.BadParameter(f"unknown detector {kind[:40]!r}; {hint}", param_hint="--detectors")
+            near = nearest(kind, KINDS, cutoff=0.4)
+            hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
+            raise typer.BadParameter(f"unknown detector {shown(kind)}; {hint}", param_hint="--detectors")
     if len(set(kinds)) != len(kinds):
         raise typer.BadParameter(f"{text[:60]!r} names a detector twice", param_hint="--detectors")
     return kinds

@@ -1,6 +1,5 @@
 """`uavsim tune`: a launch detector's settings for a scenario and a budget of false alarms."""
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated
 
@@ -63,10 +62,11 @@ def tune(
 
 def kind_of(name: str | None) -> str | None:
     """Kind of detector of a name, None without it."""
+    from sensors.choice import nearest, shown
     from uavsim.studies.operating import KINDS
 
     if name is None or name in KINDS:
         return name
-    near = get_close_matches(name, KINDS, n=1, cutoff=0.4)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(KINDS)}"
-    raise typer.BadParameter(f"unknown detector {name[:40]!r}; {hint}", param_hint="--detector")
+    near = nearest(name, KINDS, cutoff=0.4)
+    hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
+    raise typer.BadParameter(f"unknown detector {shown(name)}; {hint}", param_hint="--detector")

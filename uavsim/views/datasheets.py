@@ -1,6 +1,5 @@
 """Sensor presets in the terminal: all of them, one with its sources, and what a record on the bench shows of it."""
 
-import tomllib
 from collections.abc import Callable
 from math import floor, isfinite, log10, sqrt
 from typing import Any
@@ -9,7 +8,7 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from sensors.catalogue import path_of
+from sensors.catalogue import sheet as sheet_of
 from sensors.characterise import Characterisation
 from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
@@ -80,7 +79,7 @@ def print_presets() -> None:
 
     width = max(map(len, presets()))
     for name in presets():
-        sheet = _datasheet(name)
+        sheet = sheet_of(name)
         say(f"{name:<{width}}  {sheet['kind']:<13}  {sheet['part']}")
 
 
@@ -95,7 +94,7 @@ def print_preset(name: str) -> None:
     from sensors import preset
 
     part = preset(name)
-    sheet, console = _datasheet(name), _console()
+    sheet, console = sheet_of(name), _console()
     sources = sheet["sources"]
     _print(console, f"[bold]{escape(part.name)}[/bold]: {escape(sheet['part'])}\n{escape(sheet['document'])}\n")
     table = _sources_table("value")
@@ -134,10 +133,6 @@ def _words(key: str) -> str:
     if key in PRESET_UNITS:
         key = next((key.removesuffix(s) for s in _SUFFIXES if key.endswith(s)), key)
     return key.replace("_", " ")
-
-
-def _datasheet(name: str) -> dict[str, Any]:
-    return tomllib.loads(path_of(name).read_text(encoding="utf-8"))
 
 
 def _plain(value: Any) -> str:

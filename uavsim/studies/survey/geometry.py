@@ -3,7 +3,6 @@
 Structural frame: x aft from the nose, y right, z up, m; angles in degrees where a name ends in _deg.
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,6 +10,7 @@ from math import isfinite, radians
 from pathlib import Path
 from typing import Any
 
+from sensors.data_files import read_toml
 from uavsim.plants.hangar import aircraft, hangar
 from uavsim.studies.survey.section import naca_four_digit
 
@@ -101,14 +101,7 @@ def read_outline(name: str) -> Outline:
     """
     path = _find(name)
     try:
-        with path.open("rb") as file:
-            data = tomllib.load(file)
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path}: {error}") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: not a text in UTF-8") from None
-    try:
-        return _outline(data, path.parent.name)
+        return _outline(read_toml(path), path.parent.name)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
