@@ -41,6 +41,7 @@ Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverge
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
 PLANT_STEP = 1e-3  # s
+MOST_READINGS = 6_000_000  # of one sensor in a flight: a gigabyte, and some minutes
 NAME = r"[^\W_][\w .+-]{0,99}"
 
 
@@ -295,7 +296,8 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
     """
     scenario = settings.read(Scenario, values)
     for check in (
-        _check_name, _check_times, _check_sensors, _check_vibration, _check_directions, _check_faults, _check_detector
+        _check_name, _check_times, _check_sensors, _check_cost, _check_vibration, _check_directions, _check_faults,
+        _check_detector,
     ):  # fmt: skip
         check(scenario)
     return _with_own_parts_found(_with_aircraft_found(scenario))
@@ -382,6 +384,19 @@ def _check_sensors(s: Scenario) -> None:
             part.description()
         except ValueError as error:
             raise SettingError(f"{key}: {error}", key) from None
+
+
+def _check_cost(s: Scenario) -> None:
+    """Refuse a flight of more readings than a computer holds."""
+    for key, part in _parts(s):
+        rate = part.description().rate
+        if s.duration * rate > MOST_READINGS:
+            raise SettingError(
+                f"duration = {s.duration:g}: {key} at {rate:g} Hz would give {s.duration * rate:.3g} readings, and "
+                f"{MOST_READINGS} are the most; {MOST_READINGS / rate:.0f} s can be flown",
+                "duration",
+                key,
+            )
 
 
 def _check_vibration(s: Scenario) -> None:

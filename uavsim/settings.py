@@ -3,6 +3,10 @@
 Settings are frozen dataclasses whose fields carry their bounds (`typing.Annotated`). Every key must be known, every
 value of the declared type and within its bounds; nothing is converted silently but whole numbers to numbers and lists
 to tuples. Whatever is wrong becomes one line that names the key, the value and what is allowed.
+
+Beside the bounds that stand with each setting these hold for all of them: a number is 0 or from 1e-30 to 1e15 in
+magnitude, so that no product, square or ratio of a few of them overflows; a list has at most 1000 entries, a list of
+groups 100, and a text 4096 characters.
 """
 
 import json
@@ -24,6 +28,11 @@ Path = tuple[Any, ...]
 """Keys, and numbers of entries of a list, from the outside in."""
 
 LARGEST = 2**63 - 1  # TOML 1.0: whole numbers have 64 bits
+SMALLEST_NUMBER, LARGEST_NUMBER = 1e-30, 1e15  # of a number with a fraction, unless it is 0
+MOST_ENTRIES = 1000  # of a list of numbers; a power spectral density has some tens of points
+MOST_GROUPS = 100  # of a list of groups, or of names with a number: each fault is asked about each reading
+LONGEST_TEXT = 4096  # characters; a path has no more
+DEEPEST = 16  # lists and groups within one another
 
 _WORDS = {float: "a number", int: "a whole number", str: "text", bool: "true or false"}
 
@@ -153,18 +162,39 @@ def _check_entry(item: Any, kind: Any, key: str, where: str) -> None:
 
 
 def _plain(value: Any, path: Path) -> Any:
-    """Return the same value of nothing but groups, lists, finite numbers and text."""
+    """Return the same value of nothing but groups, lists, finite numbers and text, of a size that data of ours has."""
+    if isinstance(value, list | tuple | Mapping):
+        _check_size(value, path)
     if isinstance(value, Mapping):
         return {_name(name, path): _plain(item, (*path, name)) for name, item in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(item, (*path, i)) for i, item in enumerate(value)]
-    if value is None or isinstance(value, bool) or _is_text(value):
+    if value is None or isinstance(value, bool) or (_is_text(value) and len(value) <= LONGEST_TEXT):
         return value
     if isinstance(value, Integral) and abs(int(value)) <= LARGEST:
         return int(value)
-    if isinstance(value, Real) and not isinstance(value, Integral) and isfinite(value):
+    if isinstance(value, Real) and not isinstance(value, Integral) and _is_ordinary(float(value)):
         return float(value)
     raise _OddError(*path)
+
+
+def _check_size(value: Any, path: Path) -> None:
+    """Refuse a list or group that is longer or deeper than data of ours is."""
+    groups = isinstance(value, Mapping) or any(isinstance(item, Mapping) for item in value)
+    most = MOST_GROUPS if groups else MOST_ENTRIES
+    if len(value) > most:
+        raise SettingError(f"{_key(path)}: has {len(value)} entries; it must have {most} at most", _key(path))
+    if len(path) > DEEPEST:
+        raise SettingError(f"{_key(path)}: is nested too deep", _key(path))
+
+
+def _key(path: Path) -> str:
+    """Return a path as it is written, requirements[0].key."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)[1:]
+
+
+def _is_ordinary(value: float) -> bool:
+    return value == 0.0 or SMALLEST_NUMBER <= abs(value) <= LARGEST_NUMBER  # NaN is not
 
 
 def _name(name: Any, path: Path) -> str:
@@ -198,10 +228,15 @@ def _blame(kind: Any, values: Any, path: Path) -> SettingError:
         else:
             break
         value = value[part]
-    return SettingError(f"{key} = {shown(value)}: must be {_allowed(hint)}{_nearest(hint, value)}", top)
+    return SettingError(f"{key} = {shown(value)}: must be {_allowed(hint)}{_remark(hint, value)}", top)
 
 
-def _nearest(hint: Any, value: Any) -> str:
+def _remark(hint: Any, value: Any) -> str:
+    """Return what helps beside what is allowed."""
+    if isinstance(value, float) and isfinite(value) and not _is_ordinary(value) and " from " not in _allowed(hint):
+        return f", 0 or from {SMALLEST_NUMBER:g} to {LARGEST_NUMBER:g} in magnitude"
+    if isinstance(value, str) and len(value) > LONGEST_TEXT:
+        return f" of at most {LONGEST_TEXT} characters" if hint is str else ""
     near = nearest(value, _choices(hint)) if isinstance(value, str) else None
     return f"; did you mean {near!r}?" if near else ""
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, finite, folder, user_input
 
 if TYPE_CHECKING:
     from uavsim.onboard.launch import DetectorSettings
@@ -20,11 +20,13 @@ def roc(
     *,
     detectors: Annotated[str | None, typer.Option(metavar="A,B,...", help="Kinds of detector; all without it.")] = None,
     hours: Annotated[
-        float, typer.Option(min=0.01, max=1e5, help="Of the disturbance mix; a quarter of others.")
+        float, typer.Option(min=0.01, max=1e5, callback=finite, help="Of the disturbance mix; a quarter of others.")
     ] = 20.0,
     trials: Annotated[int, typer.Option(min=1, max=10_000_000, help="Launches.")] = 1000,
     cells: Annotated[int, typer.Option(min=0, max=1_000_000, help="Launches in each cell of the comparison.")] = 200,
-    sigma: Annotated[float, typer.Option(min=0.0, max=20.0, help="Noise of the launches that are drawn, g.")] = 0.3,
+    sigma: Annotated[
+        float, typer.Option(min=0.0, max=20.0, callback=finite, help="Noise of the launches that are drawn, g.")
+    ] = 0.3,
     scenario: Annotated[str | None, typer.Option(help="Launches and settings of a scenario, flown in JSBSim.")] = None,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Draws launches and disturbances.")] = 1,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, finite, folder, user_input
 from uavsim.cli.roc import load
 
 
@@ -13,7 +13,9 @@ def tune(
     scenario: Annotated[str, typer.Argument(help="A packaged name, a TOML file or a flight's folder.")] = "catapult",
     *,
     detector: Annotated[str | None, typer.Option(metavar="KIND", help="Kind; the scenario's without it.")] = None,
-    false_alarms: Annotated[float, typer.Option(metavar="PER_HOUR", help="Budget in the disturbance mix, 1/h.")] = 0.1,
+    false_alarms: Annotated[
+        float, typer.Option(metavar="PER_HOUR", max=1e6, callback=finite, help="Budget in the disturbance mix, 1/h.")
+    ] = 0.1,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Tuned on; the next one scores.")] = 1,
     trials: Annotated[int, typer.Option(min=10, max=20_000, help="Launches; twice as many score.")] = 200,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
