@@ -310,14 +310,15 @@ def write_table(path: Path, table: "pd.DataFrame", units: Mapping[str, str]) -> 
 
 def write_json(path: Path, value: object) -> None:
     """Write JSON with numbers or null; a value that is not finite is an error of the caller."""
-    path.write_text(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8")
+    text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    path.write_text(text, encoding="utf-8", errors="replace")  # a file's name may hold bytes that are no text
 
 
 def write_toml(path: Path, value: Mapping[str, Any]) -> None:
     """Write TOML; keys whose value is None are left out, as TOML has no null."""
     import tomli_w
 
-    path.write_text(tomli_w.dumps(without_none(value)), encoding="utf-8")
+    path.write_text(tomli_w.dumps(without_none(value)), encoding="utf-8", errors="replace")
 
 
 def without_none(value: Any) -> Any:

@@ -5,6 +5,7 @@ at all. Where text is shown each of them stands as Python writes it, `\x1b`; all
 """
 
 import re
+from html import escape
 
 LONGEST = 500  # characters of a message; six lines of a terminal
 
@@ -28,13 +29,21 @@ def visible(text: str, keep: str = "") -> str:
 
 
 def message(text: str, longest: int = LONGEST) -> str:
-    """Return the text as one line, cut in its middle where it is longer, which is said there."""
-    line = visible(" ".join(text.split()))
-    if len(line) <= longest:
-        return line
-    left_out = f" … ({len(line) - longest} characters left out) … "
+    """Return the text as one line, cut where it is longer."""
+    return cut(visible(" ".join(text.split())), longest)
+
+
+def cut(text: str, longest: int) -> str:
+    """Return the text, without its middle if it is longer; how much was left out is said there."""
+    if len(text) <= longest:
+        return text
     head = 2 * longest // 3
-    return line[:head] + left_out + line[head - longest :]
+    return f"{text[:head]} … ({len(text) - longest} characters left out) … {text[head - longest :]}"
+
+
+def in_html(text: str) -> str:
+    """Return the text for a page: nothing in it is HTML, everything is seen."""
+    return escape(visible(text, keep="\n"))
 
 
 def _is_seen(letter: str) -> bool:

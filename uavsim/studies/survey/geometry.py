@@ -16,6 +16,8 @@ from uavsim.studies.survey.section import naca_four_digit
 
 LARGEST = 100.0  # m; no UAV is larger
 MOST_INCIDENCE = 30.0  # deg
+MOST_STATIONS = 200  # of a fuselage: each is a ring of panels
+LONGEST_NAME = 100  # characters
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,8 +127,10 @@ def _outline(data: Mapping[str, Any], folder: str) -> Outline:
     if diameters[0] != 0.0 or any(d <= 0.0 for d in diameters[1:-1]) or diameters[-1] < 0.0:
         raise ValueError("fuselage.diameter: 0 at the nose and above 0 behind it")
     title = data.get("name", folder)
+    if not isinstance(title, str) or len(title) > LONGEST_NAME:
+        raise ValueError(f"name: must be text of at most {LONGEST_NAME} characters")
     return Outline(
-        str(title), stations, diameters, _wing(_group(data, "wing")), _tail(data), _fin(data),
+        title, stations, diameters, _wing(_group(data, "wing")), _tail(data), _fin(data),
         "sweep_folded_deg" in data["wing"],
     )  # fmt: skip
 
@@ -205,6 +209,8 @@ def _column(group: Mapping[str, Any], key: str) -> tuple[float, ...]:
         isinstance(each, bool) or not isinstance(each, (int, float)) or not abs(each) <= LARGEST for each in value
     ):
         raise ValueError(f"{key}: must be a list of numbers, each from -{LARGEST:g} to {LARGEST:g}")
+    if len(value) > MOST_STATIONS:
+        raise ValueError(f"{key}: has {len(value)} numbers; it must have {MOST_STATIONS} at most")
     return tuple(float(each) for each in value)
 
 
