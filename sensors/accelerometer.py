@@ -49,7 +49,7 @@ from sensors.noise import BLOCK, Array, drift, random_walk, shaped
 from sensors.settings import AccelerometerSettings, Fault, ThermalSettings
 from sensors.streams import Streams
 from sensors.thermal import Die
-from sensors.unit import REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error
+from sensors.unit import MOST_RATE_ERROR, REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error
 from sensors.vibration import Vibration
 
 Felt = tuple[float, Triple]
@@ -366,7 +366,8 @@ class Accelerometer:
         self.rectification = _triple(draw("rectification", [d.rectification_sd] * 3, [inf] * 3))
         cubic_sd = 4.0 * d.nonlinearity_sd / d.range**2
         self.nonlinearity = _triple(draw("nonlinearity", [cubic_sd] * 3, [inf] * 3))
-        self.rate_error = draw("oscillator", [d.rate_sd], [d.rate_limit])[0] + rate_error
+        sd, limit = min(d.rate_sd, MOST_RATE_ERROR), min(d.rate_limit, MOST_RATE_ERROR)
+        self.rate_error = draw("oscillator", [sd], [limit])[0] + rate_error
 
 
 def distortion(case: Matrix, quadratic: Triple, cubic: Triple, cross_axis: Matrix) -> Stage | None:

@@ -7,13 +7,13 @@ is read by the same code.
 """
 
 import os
-import tomllib
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from sensors.accelerometer_description import AccelerometerDescription
-from sensors.choice import choose
+from sensors.choice import choose, shown
+from sensors.data_files import parse_toml, read_text
 from sensors.datasheet_check import check
 from sensors.pressure_description import PressureDescription, PressureMode
 from sensors.unit import G0, Triple
@@ -62,9 +62,8 @@ def accelerometer(name: str) -> AccelerometerDescription:
     description = preset(name)
     if isinstance(description, AccelerometerDescription):
         return description
-    raise ValueError(
-        f"preset {name!r} is a pressure sensor, not an accelerometer; allowed: {_of_kind(AccelerometerDescription)}"
-    )
+    allowed = _of_kind(AccelerometerDescription)
+    raise ValueError(f"preset {shown(name)} is a pressure sensor, not an accelerometer; allowed: {allowed}")
 
 
 def pressure_sensor(name: str) -> PressureDescription:
@@ -72,26 +71,28 @@ def pressure_sensor(name: str) -> PressureDescription:
     description = preset(name)
     if isinstance(description, PressureDescription):
         return description
-    raise ValueError(
-        f"preset {name!r} is an accelerometer, not a pressure sensor; allowed: {_of_kind(PressureDescription)}"
-    )
+    allowed = _of_kind(PressureDescription)
+    raise ValueError(f"preset {shown(name)} is an accelerometer, not a pressure sensor; allowed: {allowed}")
 
 
 def read(path: Path) -> Description:
     """Return the description in one TOML file; ValueError, with file and key, if it is not as it should be."""
     try:
-        return _described(path.stem, path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ValueError(f"{path.name}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path.name}: is not UTF-8 text") from error
-    except (ValueError, RecursionError) as error:  # a TOMLDecodeError is a ValueError
+        return _described(path.stem, read_text(path))
+    except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from error
+
+
+def sheet(name: str) -> dict[str, Any]:
+    """Return what the file of a part holds, by its name or path; ValueError as of `preset`."""
+    path = path_of(name)
+    read(path)
+    return parse_toml(read_text(path))
 
 
 @lru_cache(maxsize=64)  # a flight asks for its parts several times; by text, so that an edited file is read anew
 def _described(name: str, text: str) -> Description:
-    sheet = tomllib.loads(text)
+    sheet = parse_toml(text)
     check(sheet)
     document = f"{sheet['part']}: {sheet['document']}"
     build = _accelerometer if sheet["kind"] == "accelerometer" else _pressure
@@ -105,7 +106,7 @@ def path_of(name: str) -> Path:
         return FOLDER / f"{choose('preset', name, presets())}.toml"
     path = Path(name)
     if not path.is_file():
-        raise ValueError(f"preset {name!r} is unknown: there is no such file")
+        raise ValueError(f"preset {shown(name)} is unknown: there is no such file")
     return path
 
 

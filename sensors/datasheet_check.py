@@ -1,165 +1,46 @@
 """Whether a preset's file says what a part is, completely and in the right units: looked at when it is read.
 
-Every check is one line that names the key. What a file holds is looked at in this order: its keys, each value by itself
-(type, sign, order, number of axes), its sources, and then what has to fit together:
+Keys come first: all that are unknown or missing are named in one line. Then each value by itself
+(`sensors.datasheet_bounds`), its sources, and then what has to fit together, each in one line that names the key:
 
     bandwidth ≤ rate/2                  a sampled signal has no more
     limit ≥ standard deviation          a unit beyond the limit is drawn again: below it that would not end
+    offset, and that of 100 K, ≤ range  a unit that is off by more shows nothing
+    101 325 Pa within the range         where every part is put on the bench, and most flights begin
     conversion time ≤ 1/rate            a conversion ends before the next one begins
     0 < weight a ≤ 1                    y += a (x - y) follows its input
 """
 
-from collections.abc import Callable, Collection, Sequence
-from difflib import get_close_matches
-from itertools import pairwise
-from math import inf
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from typing import Any
 
-from sensors.choice import choose
-
-Rule = Callable[[str, Any], None]
+from sensors.choice import choose, nearest, shown
+from sensors.datasheet_bounds import ACCELEROMETER, MODE, NAMES, PRESSURE, SENTENCE, Rule, listed, table, text
 
 KINDS = ("accelerometer", "pressure")
 HEAD_KEYS = ("kind", "part", "document", "values", "sources")
 
-HUGE = 1e15  # no part has such a number, in any of the units
+TEMPERATURES = 100.0  # K, between the coldest and the warmest that a sensor sees
+STANDARD_PRESSURE = 101_325.0  # Pa (ISO 2533)
+SLOWEST = 1e-6  # of the rate: a low-pass that takes a million readings to settle
 
 UNITS = {"g": "g", "mg": "mg", "ug": "µg", "percent": "%", "hz": "Hz", "pa": "Pa", "k": "K", "ms": "ms"}
 NOT_IN_THE_NAME = {"correlation_time": "s", "scale": "a fraction", "scale_limit": "a fraction", "bits": "bit"}
 OTHER_SUFFIXES = ("hpa", "kpa", "mbar", "bar", "khz", "ppm", "fraction", "s", "us", "c", "degc", "mps2", "ms2", "m")
 
-
-# -- one value -------------------------------------------------------------------------------------------------------
-
-
-def number(low: float = -inf, high: float = inf, *, above: float = -inf) -> Rule:
-    """Return the rule for a finite number with low ≤ number ≤ high and number > above."""
-
-    def rule(where: str, value: Any) -> None:
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise _not("a number", where, value)
-        if not abs(value) <= HUGE:  # NaN is not either
-            raise ValueError(f"key {where} must be a finite number, up to {HUGE:g}")
-        if value <= above:
-            raise ValueError(f"key {where} is {value:g}; it must be above {above:g}")
-        if not low <= value <= high:
-            bounds = f"at least {low:g}" if high == inf else f"{low:g} to {high:g}"
-            raise ValueError(f"key {where} is {value:g}; it must be {bounds}")
-
-    return rule
+TOLD = 3  # unknown keys that are told one by one
 
 
-def whole(low: int, high: int) -> Rule:
-    """Return the rule for a whole number with low ≤ number ≤ high."""
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A table of a file: the prefix of its keys, those it has, must have and may have, and a remark on where it is."""
 
-    def rule(where: str, value: Any) -> None:
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise _not("a whole number", where, value)
-        number(low, high)(where, value)
-
-    return rule
-
-
-def text(where: str, value: Any) -> None:
-    """Check that a value is text and says something."""
-    if not isinstance(value, str):
-        raise _not("text", where, value)
-    if not value.strip():
-        raise ValueError(f"key {where} is empty")
-
-
-def listed(item: Rule, *, count: int | None = None, rising: bool = False) -> Rule:
-    """Return the rule for a list of such items, of this length (else of any but 0), each above the one before it."""
-
-    def rule(where: str, value: Any) -> None:
-        if not isinstance(value, list):
-            raise _not("a list", where, value)
-        if not value:
-            raise ValueError(f"key {where} is an empty list")
-        if count is not None and len(value) != count:
-            raise ValueError(f"key {where} must be a list of {count}, not of {len(value)}")
-        for index, entry in enumerate(value):
-            item(f"{where}[{index}]", entry)
-        if rising and any(after <= before for before, after in pairwise(value)):
-            raise ValueError(f"key {where} must rise from each to the next")
-
-    return rule
-
-
-def _not(wanted: str, where: str, value: Any) -> ValueError:
-    names = {bool: "true or false", str: "text", list: "a list", dict: "a table", float: "a number with a fraction"}
-    given = names.get(type(value), "a number" if isinstance(value, int) else "a date or time")
-    return ValueError(f"key {where} must be {wanted}, not {given}")
-
-
-AT_LEAST_0 = number(0.0)
-ABOVE_0 = number(above=0.0)
-PERCENT = number(0.0, 100.0)
-CLOCK_PERCENT = number(0.0, 50.0)
-AXES = listed(AT_LEAST_0, count=3)
-
-ACCELEROMETER: dict[str, Rule] = {
-    "ranges_g": listed(ABOVE_0, rising=True),
-    "default_range_g": ABOVE_0,
-    "rates": listed(ABOVE_0, rising=True),
-    "default_rate": ABOVE_0,
-    "bits": listed(whole(2, 32)),
-    "filters": listed(text),
-    "default_filter": text,
-    "bandwidth_hz": listed(listed(AT_LEAST_0)),
-    "poles": whole(0, 2),  # 0 is the mean over one output interval
-    "noise_density_ug": listed(AXES),
-    "noise_rate_floor": AT_LEAST_0,
-    "offset_mg": AXES,
-    "offset_limit_mg": AXES,
-    "offset_tc_mg": AXES,
-    "offset_tc_limit_mg": AXES,
-    "scale_percent": PERCENT,
-    "scale_limit_percent": PERCENT,
-    "scale_tc_percent": PERCENT,
-    "scale_tc_limit_percent": PERCENT,
-    "cross_axis_percent": PERCENT,
-    "cross_axis_limit_percent": PERCENT,
-    "nonlinearity_percent": PERCENT,
-    "rectification_ug": AT_LEAST_0,
-    "drift_ug": AT_LEAST_0,
-    "correlation_time": ABOVE_0,
-    "random_walk_ug": AT_LEAST_0,
-    "rate_percent": CLOCK_PERCENT,
-    "rate_limit_percent": CLOCK_PERCENT,
-}
-PRESSURE: dict[str, Rule] = {
-    "default_mode": text,
-    "range_pa": listed(AT_LEAST_0, count=2, rising=True),
-    "iir_coefficients": listed(whole(0, 10**6), rising=True),
-    "iir_weights": listed(number(0.0, 1.0, above=0.0)),
-    "reference_pressure_pa": AT_LEAST_0,
-    "offset_pa": AT_LEAST_0,
-    "offset_limit_pa": AT_LEAST_0,
-    "offset_tc_pa": AT_LEAST_0,
-    "offset_tc_limit_pa": AT_LEAST_0,
-    "solder_pa": listed(number(), count=2),
-    "acceleration_pa": AT_LEAST_0,
-    "acceleration_limit_pa": AT_LEAST_0,
-    "scale": number(0.0, 1.0),
-    "scale_limit": number(0.0, 1.0),
-    "rate_percent": CLOCK_PERCENT,
-    "rate_limit_percent": CLOCK_PERCENT,
-    "drift_pa": AT_LEAST_0,
-    "correlation_time": ABOVE_0,
-    "random_walk_pa": AT_LEAST_0,
-    "temperature_offset_k": AT_LEAST_0,
-    "temperature_offset_limit_k": AT_LEAST_0,
-    "temperature_resolution_k": ABOVE_0,
-}
-MODE: dict[str, Rule] = {
-    "name": text,
-    "noise_pa": AT_LEAST_0,
-    "resolution_pa": ABOVE_0,
-    "temperature_noise_k": AT_LEAST_0,
-    "conversion_ms": ABOVE_0,
-    "rate": ABOVE_0,
-}
+    prefix: str
+    found: Collection[str]
+    wanted: Collection[str]
+    allowed: Collection[str]
+    where: str = ""
 
 
 # -- a file ----------------------------------------------------------------------------------------------------------
@@ -169,22 +50,17 @@ def check(sheet: dict[str, Any]) -> None:
     """Check what a preset's file holds; ValueError, one line that names the key, at the first thing that is wrong."""
     if "kind" not in sheet:
         raise ValueError("key kind is missing")
-    text("kind", sheet["kind"])
+    NAMES("kind", sheet["kind"])
     pressure = choose("kind", sheet["kind"], KINDS) == "pressure"
-    _keys("", sheet, (*HEAD_KEYS, "modes") if pressure else HEAD_KEYS)
-    text("part", sheet["part"])
-    text("document", sheet["document"])
+    _check_keys(sheet, PRESSURE if pressure else ACCELEROMETER, pressure=pressure)
+    text(SENTENCE)("part", sheet["part"])
+    text(SENTENCE)("document", sheet["document"])
     values = sheet["values"]
-    _table("values", values)
     _entries("values.", values, PRESSURE if pressure else ACCELEROMETER)
-    sourced = list(values)
-    if pressure:
-        listed(_table)("modes", sheet["modes"])
-        for mode in sheet["modes"]:
-            _entries("modes.", mode, MODE)
-        sourced += [f"modes.{key}" for key in MODE]
-    _table("sources", sheet["sources"])
-    _sources(sheet["sources"], sourced)
+    for mode in sheet["modes"] if pressure else ():
+        _entries("modes.", mode, MODE)
+    for key, source in sheet["sources"].items():
+        text(SENTENCE)(f"sources.{key}", source)
     _limits(values)
     if pressure:
         _fits_pressure(values, sheet["modes"])
@@ -192,34 +68,51 @@ def check(sheet: dict[str, Any]) -> None:
         _fits_accelerometer(values)
 
 
-def _table(where: str, value: Any) -> None:
-    if not isinstance(value, dict):
-        raise _not("a table", where, value)
+def _check_keys(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool) -> None:
+    """Name all keys that are missing, and those that are unknown."""
+    places = list(_places(sheet, rules, pressure=pressure))
+    missing = [f"{p.prefix}{key}{p.where}" for p in places for key in p.wanted if key not in p.found]
+    unknown = [_unknown(p.prefix, key, p.allowed) for p in places for key in p.found if key not in p.allowed]
+    said = unknown[:TOLD]
+    if len(unknown) > TOLD:
+        said.append(f"{len(unknown) - TOLD} more keys are unknown")
+    if missing:
+        listed = f"keys {', '.join(missing)} are missing" if len(missing) > 1 else f"key {missing[0]} is missing"
+        said.insert(0, listed + (": every number needs its source" if "sources." in missing[-1] else ""))
+    if said:
+        raise ValueError("; ".join(said))
 
 
-def _entries(where: str, table: dict[str, Any], rules: dict[str, Rule]) -> None:
-    _keys(where, table, rules)
-    for key, rule in rules.items():
-        rule(f"{where}{key}", table[key])
-
-
-def _keys(where: str, table: dict[str, Any], allowed: Collection[str]) -> None:
-    for key in table:
-        if key not in allowed:
-            raise ValueError(_unknown(where, key, allowed))
-    for key in allowed:
-        if key not in table:
-            raise ValueError(f"key {where}{key} is missing")
+def _places(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool) -> Iterator[Place]:
+    """Yield the tables of a file that are there."""
+    head = (*HEAD_KEYS, "modes") if pressure else HEAD_KEYS
+    yield Place("", sheet, head, head)
+    values, modes, sources = sheet.get("values", {}), sheet.get("modes", []), sheet.get("sources", {})
+    table("values", values)
+    table("sources", sources)
+    if "values" in sheet:
+        yield Place("values.", values, rules, rules)
+    sourced, known = [key for key in rules if key in values], list(rules)
+    if pressure and "modes" in sheet:
+        listed(table)("modes", modes)
+        for number, mode in enumerate(modes, 1):
+            yield Place("modes.", mode, MODE, MODE, f" (mode {number})")
+        sourced += [f"modes.{key}" for key in MODE if any(key in mode for mode in modes)]
+        known += [f"modes.{key}" for key in MODE]
+    if "sources" in sheet:
+        yield Place("sources.", sources, sourced, known)
 
 
 def _unknown(where: str, key: str, allowed: Collection[str]) -> str:
     """Return the line on a key that is not known; one that is known but for its unit says which unit is wanted."""
+    name = shown(where + key)
+    if where == "sources.":
+        return f"key {name} is the source of nothing; nearest: sources.{nearest(key, allowed, cutoff=0.0)}"
     for known in allowed:
         if _stem(key) == _stem(known):
             unit = UNITS.get(known.rpartition("_")[2]) or NOT_IN_THE_NAME.get(known, "Hz")
-            return f"key {where + key!r} has the wrong unit; wanted: {unit}, as {where}{known}"
-    nearest = get_close_matches(key, allowed, n=1, cutoff=0.0)[0]
-    return f"key {where + key!r} is unknown; nearest: {where}{nearest}"
+            return f"key {name} has the wrong unit; wanted: {unit}, as {where}{known}"
+    return f"key {name} is unknown; nearest: {where}{nearest(key, allowed, cutoff=0.0)}"
 
 
 def _stem(key: str) -> str:
@@ -228,15 +121,9 @@ def _stem(key: str) -> str:
     return stem if stem and suffix in (*UNITS, *OTHER_SUFFIXES) else key
 
 
-def _sources(sources: dict[str, Any], numbers: Sequence[str]) -> None:
-    for key in sources:
-        if key not in numbers:
-            nearest = get_close_matches(key, numbers, n=1, cutoff=0.0)[0]
-            raise ValueError(f"key {'sources.' + key!r} is the source of nothing; nearest: sources.{nearest}")
-    for key in numbers:
-        if key not in sources:
-            raise ValueError(f"key sources.{key} is missing: every number needs its source")
-        text(f"sources.{key}", sources[key])
+def _entries(where: str, values: dict[str, Any], rules: dict[str, Rule]) -> None:
+    for key, rule in rules.items():
+        rule(f"{where}{key}", values[key])
 
 
 # -- what has to fit together ----------------------------------------------------------------------------------------
@@ -257,6 +144,11 @@ def _as_list(value: Any) -> list[float]:
 
 
 def _fits_accelerometer(v: dict[str, Any]) -> None:
+    most = 1000.0 * max(v["ranges_g"])  # mg
+    for key, factor in (("offset_limit_mg", 1.0), ("offset_tc_limit_mg", TEMPERATURES)):
+        if factor * max(v[key]) > most:
+            over = f", over {TEMPERATURES:g} K," if factor > 1.0 else ""
+            raise ValueError(f"key values.{key}{over} is beyond the range, {most:g} mg: nothing would be seen")
     for key in ("bits", "noise_density_ug"):
         if len(v[key]) != len(v["ranges_g"]):
             raise ValueError(f"key values.{key} needs one entry for each of ranges_g")
@@ -273,19 +165,23 @@ def _fits_accelerometer(v: dict[str, Any]) -> None:
     choose("key values.default_rate:", float(v["default_rate"]), [float(r) for r in rates])
     choose("key values.default_filter:", v["default_filter"], v["filters"])
     if not table[v["filters"].index(v["default_filter"])][rates.index(v["default_rate"])]:
-        raise ValueError(
-            f"key values.default_filter {v['default_filter']!r} does not exist at default_rate {v['default_rate']:g}"
-        )
+        name, rate = shown(v["default_filter"]), v["default_rate"]
+        raise ValueError(f"key values.default_filter {name} does not exist at default_rate {rate:g}")
 
 
 def _bandwidths(name: str, rates: list[float], row: list[float]) -> None:
     for rate, width in zip(rates, row, strict=True):
         if width > rate / 2.0:
             raise ValueError(
-                f"key values.bandwidth_hz has {width:g} Hz for filter {name!r} at {rate:g} Hz, above half the rate"
+                f"key values.bandwidth_hz has {width:g} Hz for filter {shown(name)} at {rate:g} Hz, above half the rate"
+            )
+        if 0.0 < width < SLOWEST * rate:
+            raise ValueError(
+                f"key values.bandwidth_hz has {width:g} Hz for filter {shown(name)} at {rate:g} Hz; it must be 0 (no "
+                f"such setting), or at least {SLOWEST:g} of the rate"
             )
     if not any(row):
-        raise ValueError(f"key values.bandwidth_hz is 0 at every rate for filter {name!r}: leave the filter out")
+        raise ValueError(f"key values.bandwidth_hz is 0 at every rate for filter {shown(name)}: leave the filter out")
 
 
 def _fits_pressure(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
@@ -295,14 +191,20 @@ def _fits_pressure(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
     for mode in modes:
         if mode["conversion_ms"] / 1000.0 > (1.0 + 1e-9) / mode["rate"]:
             raise ValueError(
-                f"key modes.conversion_ms of mode {mode['name']!r}, {mode['conversion_ms']:g} ms, is longer than the"
-                f" period of its rate, {1000.0 / mode['rate']:g} ms"
+                f"key modes.conversion_ms of mode {shown(mode['name'])}, {mode['conversion_ms']:g} ms, is longer than "
+                f"the period of its rate, {1000.0 / mode['rate']:g} ms"
             )
     if len(v["iir_weights"]) != len(v["iir_coefficients"]):
         raise ValueError("key values.iir_weights needs one entry for each of iir_coefficients")
     if v["iir_coefficients"][0] != 0 or v["iir_weights"][0] != 1:
         raise ValueError("key values.iir_coefficients must begin with 0, the filter off, and iir_weights with its 1")
     low, high = v["range_pa"]
+    if not low <= STANDARD_PRESSURE <= high:
+        span = f"{low:g} to {high:g} Pa"
+        raise ValueError(f"key values.range_pa, {span}, does not hold {STANDARD_PRESSURE:g} Pa, the air's at sea level")
+    for mode in modes:
+        if mode["resolution_pa"] > high - low:
+            raise ValueError(f"key modes.resolution_pa of mode {shown(mode['name'])} is wider than range_pa")
     if not low <= v["reference_pressure_pa"] <= high:
         raise ValueError("key values.reference_pressure_pa is outside range_pa")
     if v["solder_pa"][0] > v["solder_pa"][1]:

@@ -35,13 +35,11 @@ from sensors.pressure_description import PressureDescription
 from sensors.settings import Fault, ThermalSettings
 from sensors.streams import Streams
 from sensors.thermal import Die
-from sensors.unit import REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error, unit_vector
+from sensors.unit import MOST_RATE_ERROR, REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error, unit_vector
 
 Conversion = tuple[float, float, float]  # pressure Pa, temperature K, end of conversion s
 Truth = Callable[[float], tuple[float, float]]  # time s -> pressure at the sensor Pa, temperature K
 Blocks = list[Iterator[Array]]
-
-MOST_RATE_ERROR = 0.5  # –; whatever factor is put on the oscillator's error, a unit further off is not sold
 
 
 class PressureSensor:
@@ -240,7 +238,7 @@ class PressureSensor:
         self.solder = 0.0 if unit == "ideal" else 0.5 * (low + high) + shift
         self.offset_tc = drawn("offset_tc", d.offset_tc_sd, d.offset_tc_limit)
         self.scale_error = drawn("scale", d.scale_sd, d.scale_limit)
-        self.rate_error = drawn("oscillator", d.rate_sd, min(d.rate_limit, MOST_RATE_ERROR))
+        self.rate_error = drawn("oscillator", min(d.rate_sd, MOST_RATE_ERROR), min(d.rate_limit, MOST_RATE_ERROR))
         self.temperature_offset = drawn("temperature.offset", d.temperature_offset_sd, d.temperature_offset_limit)
         x, y, z = normal
         self.acceleration = (sensitivity * x, sensitivity * y, sensitivity * z)

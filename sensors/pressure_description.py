@@ -14,6 +14,7 @@ from sensors.choice import choose
 from sensors.unit import DriftModel, Factor
 
 UNQUANTISED_STEP = 1e-9  # Pa and K: stands for no quantisation
+FASTEST_FILTER = 2.0 * (sqrt(2.0) - 1.0)  # a of the y += a (x - y) that is 3 dB down at half the rate; above, nowhere
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,9 +248,9 @@ class PressureDescription:
 
     @property
     def bandwidth(self) -> float:
-        """The -3 dB frequency, Hz: of the digital filter, or of the mean over the conversion window if that is off."""
+        """The -3 dB frequency, Hz: of the digital filter, else of the mean over the conversion window."""
         a = self.iir_weight
-        if a == 1.0:
+        if a > FASTEST_FILTER:
             return 0.4429 / self.mode.conversion_time  # sinc(f T) = 1/√2 at f T = 0.4429
         return acos(1.0 - a * a / (2.0 * (1.0 - a))) / (2.0 * pi) * self.rate
 

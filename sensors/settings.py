@@ -21,6 +21,9 @@ Angle = Annotated[float, Interval(ge=-360.0, le=360.0)]  # degrees
 Time = Annotated[float, Interval(ge=0.0, le=3600.0)]  # s
 Arm = Annotated[float, Interval(ge=-10.0, le=10.0)]  # m
 Vector = tuple[float, float, float]
+Amplitude = Annotated[float, Interval(ge=-1000.0, le=1000.0)]  # g; nothing that flies shakes more
+Density = Annotated[float, Interval(gt=0.0, le=1000.0)]  # g²/Hz, 700 g rms over the plant's 500 Hz
+Offset = Annotated[float, Interval(ge=-10_000.0, le=10_000.0)]  # m/s², 1000 g
 FOREVER = 3600.0  # s, the longest flight
 
 
@@ -41,7 +44,7 @@ class Tone:
     """
 
     frequency_hz: Band
-    amplitude_g: Vector
+    amplitude_g: tuple[Amplitude, Amplitude, Amplitude]
     phase_deg: Angle = 0.0
     when: Phase = "always"
 
@@ -58,7 +61,7 @@ class Spectrum:
         In which phase of the flight it is there: "waiting", "stroke", "flight" or "always".
     """
 
-    psd: tuple[tuple[float, float], ...]
+    psd: tuple[tuple[Band, Density], ...]
     when: Phase = "always"
 
 
@@ -193,7 +196,7 @@ class AccelerometerSettings:
     range_g: Annotated[float, Gt(0.0)] | None = None
     rate: Annotated[float, Gt(0.0)] | None = None
     noise_scale: Annotated[float, Interval(ge=0.0, le=1000.0)] = 1.0
-    bias: float | tuple[float, float, float] = 0.0
+    bias: Offset | tuple[Offset, Offset, Offset] = 0.0
     vibration_scale: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
     unit: Unit = "random"
     filter: str | None = None

@@ -16,6 +16,7 @@ DriftModel = Literal["gauss-markov", "flicker"]
 Factor = Annotated[float, Interval(ge=0.0, le=1000.0)]
 
 G0 = 9.80665  # standard gravity, m/s² (CGPM 1901)
+MOST_RATE_ERROR = 0.5  # –; whatever factor is put on an oscillator's error, a unit further off is not sold
 REFERENCE_TEMPERATURE = 298.15  # K, 25 °C: where datasheets state their figures and temperature errors are zero
 
 # x + ROUND - ROUND is x rounded to a whole number, ties to even, for |x| < 2^51, and NaN for NaN: the sum has no bits

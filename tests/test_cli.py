@@ -294,7 +294,7 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
     [
         ("fly catapalt", "unknown scenario 'catapalt'; did you mean 'catapult'?"),
         ("fly nothing.toml", "nothing.toml: there is no such file"),
-        ("fly binary", "binary: not a TOML file"),
+        ("fly binary", "binary: is not text in UTF-8"),
         ("fly .", "this folder holds no scenario.toml"),
         ("fly one two", "unexpected extra argument"),
         ("fly --sets x=1", "No such option: --sets"),

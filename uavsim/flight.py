@@ -9,13 +9,13 @@ import json
 import os
 import secrets
 import shutil
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sensors.data_files import LARGEST, parse_json, parse_toml, read_text
 from uavsim.truth import UNITS as TRUTH_UNITS
 
 if TYPE_CHECKING:
@@ -45,6 +45,9 @@ OURS = {f"{table}.parquet" for table in (*UNITS, "runs")} | {
     *("scenario.toml", "score.json", "events.json", "campaign.json", "report.html", "plots", "flights")
 }
 """What is in the folders of flights and campaigns, and so is replaced when one is written again."""
+
+
+LARGEST_JSON = 50_000_000  # bytes; a recording of a million detections has as much
 
 
 @dataclass(frozen=True)
@@ -146,27 +149,35 @@ def load(path: str | os.PathLike[str]) -> Flight:
     folder = Path(path)
     if not folder.is_dir():
         raise ValueError(f"{folder} is not a flight's folder: there is no such folder")
-    scenario = _read(folder / "scenario.toml", tomllib.loads, dict)
-    events = _read(folder / "events.json", json.loads, list)
-    score = _read(folder / "score.json", json.loads, dict)
+    scenario = _read(folder / "scenario.toml", parse_toml, dict)
+    events = _read(folder / "events.json", parse_json, list)
+    score = _read(folder / "score.json", parse_json, dict)
+    if not all(map(_is_event, events)):
+        raise ValueError(f"{folder / 'events.json'} is not a flight's: an event has a time t, s, and a name")
     files = {name: folder / f"{name}.parquet" for name in UNITS}
     return Flight(scenario, {n: _read_table(n, file) for n, file in files.items() if file.is_file()}, events, score)
 
 
 def _read(file: Path, parse: Callable[[str], Any], kind: type) -> Any:
+    if not file.exists():
+        raise ValueError(f"{file.parent} is not a flight's folder: {file.name} is missing")
     try:
-        value = parse(file.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise ValueError(f"{file.parent} is not a flight's folder: {file.name} is missing") from None
-    except OSError as error:
-        raise ValueError(f"{file} cannot be read: {error.strerror}") from None
-    except (ValueError, RecursionError) as error:
+        text = read_text(file, LARGEST_JSON if file.suffix == ".json" else LARGEST)
+    except ValueError as error:
+        raise ValueError(f"{file} {error}") from None
+    try:
+        value = parse(text)
+    except ValueError as error:
         raise ValueError(f"{file} is damaged: {error}") from None
     if not isinstance(value, kind):
         raise ValueError(  # noqa: TRY004 (what is wrong is the file)
             f"{file} is not a flight's: it holds a {type(value).__name__}, not a {kind.__name__}"
         )
     return value
+
+
+def _is_event(value: Any) -> bool:
+    return isinstance(value, dict) and isinstance(value.get("t"), int | float) and isinstance(value.get("event"), str)
 
 
 def _read_table(name: str, file: Path) -> "pd.DataFrame":
@@ -299,14 +310,15 @@ def write_table(path: Path, table: "pd.DataFrame", units: Mapping[str, str]) -> 
 
 def write_json(path: Path, value: object) -> None:
     """Write JSON with numbers or null; a value that is not finite is an error of the caller."""
-    path.write_text(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8")
+    text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    path.write_text(text, encoding="utf-8", errors="replace")  # a file's name may hold bytes that are no text
 
 
 def write_toml(path: Path, value: Mapping[str, Any]) -> None:
     """Write TOML; keys whose value is None are left out, as TOML has no null."""
     import tomli_w
 
-    path.write_text(tomli_w.dumps(without_none(value)), encoding="utf-8")
+    path.write_text(tomli_w.dumps(without_none(value)), encoding="utf-8", errors="replace")
 
 
 def without_none(value: Any) -> Any:

@@ -8,10 +8,8 @@ cannot tell one by one is checked here.
 import math
 import os
 import re
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
@@ -20,6 +18,8 @@ import numpy as np
 from annotated_types import Interval
 
 from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings, presets
+from sensors.choice import nearest, shown
+from sensors.data_files import parse_toml, read_toml
 from sensors.settings import Fault, PortFault
 from sensors.vibration import check as check_vibration
 from uavsim import settings
@@ -41,8 +41,8 @@ Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverge
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
 PLANT_STEP = 1e-3  # s
+MOST_READINGS = 6_000_000  # of one sensor in a flight: a gigabyte, and some minutes
 NAME = r"[^\W_][\w .+-]{0,99}"
-LARGEST_FILE = 1_000_000  # bytes; the largest packaged scenario has a thousandth of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,36 +242,25 @@ def _find(source: str | Path) -> Path:
         return path
     if "/" in name or name.endswith(".toml"):
         raise ValueError(f"{name}: there is no such file")
-    near = get_close_matches(name, packaged_names(), n=1, cutoff=0.3)
-    hint = f"did you mean {near[0]!r}? " if near else ""
+    near = nearest(name, packaged_names(), cutoff=0.3)
+    hint = f"did you mean {near!r}? " if near else ""
     raise ValueError(
-        f"unknown scenario {name!r}; {hint}packaged: {', '.join(packaged_names())}; or the path of a TOML file"
+        f"unknown scenario {shown(name)}; {hint}packaged: {', '.join(packaged_names())}; or the path of a TOML file"
     )
 
 
 def _parsed(path: Path) -> dict[str, Any]:
     try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
-    if len(content) > LARGEST_FILE:
-        raise ValueError(f"{path}: not a scenario: larger than {LARGEST_FILE} bytes")
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: not a TOML file: it is not text in UTF-8") from None
-    except ValueError as error:  # TOMLDecodeError, and Python's own on numbers of thousands of digits
-        raise ValueError(f"{path}: not valid TOML: {error}") from None
-    except RecursionError:
-        raise ValueError(f"{path}: not a scenario: nested too deep") from None
+        return read_toml(path)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
 
 
 def _apply(values: dict[str, Any], override: str) -> str:
     """Change one key; return it."""
     key, equals, text = (part.strip() for part in override.partition("="))
     if not equals or not key:
-        raise ValueError(f"--set {override!r}: give it as KEY=VALUE")
+        raise ValueError(f"--set {shown(override)}: give it as KEY=VALUE")
     free = key.startswith(PROPERTIES)  # what follows is JSBSim's name, which holds slashes and may hold dots
     if not free and key not in keys():
         raise ValueError(f"--set: {settings.unknown(Scenario, key).problem}")
@@ -288,8 +277,8 @@ def _apply(values: dict[str, Any], override: str) -> str:
 def _value(text: str) -> Any:
     """Read a value as TOML has it; what is none is text."""
     try:
-        found = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
+        found = parse_toml(f"value = {text}")
+    except ValueError:
         return text
     return found["value"] if list(found) == ["value"] else text
 
@@ -307,7 +296,8 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
     """
     scenario = settings.read(Scenario, values)
     for check in (
-        _check_name, _check_times, _check_sensors, _check_vibration, _check_directions, _check_faults, _check_detector
+        _check_name, _check_times, _check_sensors, _check_cost, _check_vibration, _check_directions, _check_faults,
+        _check_detector,
     ):  # fmt: skip
         check(scenario)
     return _with_own_parts_found(_with_aircraft_found(scenario))
@@ -394,6 +384,19 @@ def _check_sensors(s: Scenario) -> None:
             part.description()
         except ValueError as error:
             raise SettingError(f"{key}: {error}", key) from None
+
+
+def _check_cost(s: Scenario) -> None:
+    """Refuse a flight of more readings than a computer holds."""
+    for key, part in _parts(s):
+        rate = part.description().rate
+        if s.duration * rate > MOST_READINGS:
+            raise SettingError(
+                f"duration = {s.duration:g}: {key} at {rate:g} Hz would give {s.duration * rate:.3g} readings, and "
+                f"{MOST_READINGS} are the most; {MOST_READINGS / rate:.0f} s can be flown",
+                "duration",
+                key,
+            )
 
 
 def _check_vibration(s: Scenario) -> None:
@@ -491,9 +494,9 @@ def _check_requirements(s: Scenario) -> None:
     for i, r in enumerate(s.requirements):
         where = f"requirements[{i}]"
         if r.key not in figures():
-            near = get_close_matches(r.key, figures(), n=1, cutoff=0.5)
-            hint = f"; did you mean {near[0]!r}?" if near else "; see score.json for those there are"
-            raise SettingError(f"{where}.key = {r.key!r}: is no number of the score{hint}", "requirements")
+            near = nearest(r.key, figures())
+            hint = f"; did you mean {near!r}?" if near else "; see score.json for those there are"
+            raise SettingError(f"{where}.key = {shown(r.key)}: is no number of the score{hint}", "requirements")
         if r.minimum is not None and r.maximum is not None and r.minimum > r.maximum:
             raise SettingError(f"{where} ({r.key}): minimum is above maximum", "requirements")
 

@@ -3,18 +3,22 @@
 Settings are frozen dataclasses whose fields carry their bounds (`typing.Annotated`). Every key must be known, every
 value of the declared type and within its bounds; nothing is converted silently but whole numbers to numbers and lists
 to tuples. Whatever is wrong becomes one line that names the key, the value and what is allowed.
+
+Beside the bounds that stand with each setting these hold for all of them: a number is 0 or from 1e-30 to 1e15 in
+magnitude, so that no product, square or ratio of a few of them overflows; a list has at most 1000 entries, a list of
+groups 100, and a text 4096 characters.
 """
 
 import json
-import reprlib
 import types
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
-from difflib import get_close_matches
 from functools import cache
 from math import isfinite
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from sensors.choice import nearest, shown
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -24,9 +28,12 @@ Path = tuple[Any, ...]
 """Keys, and numbers of entries of a list, from the outside in."""
 
 LARGEST = 2**63 - 1  # TOML 1.0: whole numbers have 64 bits
+SMALLEST_NUMBER, LARGEST_NUMBER = 1e-30, 1e15  # of a number with a fraction, unless it is 0
+MOST_ENTRIES = 1000  # of a list of numbers; a power spectral density has some tens of points
+MOST_GROUPS = 100  # of a list of groups, or of names with a number: each fault is asked about each reading
+LONGEST_TEXT = 4096  # characters; a path has no more
+DEEPEST = 16  # lists and groups within one another
 
-_SHORT = reprlib.Repr()
-_SHORT.maxstring = _SHORT.maxother = 60
 _WORDS = {float: "a number", int: "a whole number", str: "text", bool: "true or false"}
 
 
@@ -106,10 +113,10 @@ def unknown(kind: type, key: str) -> SettingError:
         return SettingError(f"{key} is a group; its keys are {', '.join(inside)}", key)
     last = key.rpartition(".")[2]
     names = {k if "." in key else k.rpartition(".")[2]: k for k in reversed(known)}
-    near = [names[match] for match in get_close_matches(key, names, n=1, cutoff=0.5)]
-    near = near or [k for k in known if k.rpartition(".")[2] == last][:1]  # a right name in a wrong group
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(hints(kind))}"
-    return SettingError(f"unknown key {_shown(key)}; {hint}", key)
+    near = names.get(nearest(key, names) or "")
+    near = near or next((k for k in known if k.rpartition(".")[2] == last), None)  # a right name in a wrong group
+    hint = f"did you mean {near!r}?" if near else f"there are {', '.join(hints(kind))}"
+    return SettingError(f"unknown key {shown(key)}; {hint}", key)
 
 
 # -- from the outside in ---------------------------------------------------------------------------------------------
@@ -136,7 +143,7 @@ def _check_keys(values: Mapping[str, Any], kind: Any, root: type, prefix: str) -
         entry = _entry(hint)
         if _is_group(hint):
             if not isinstance(value, Mapping):
-                raise SettingError(f"{key} = {_shown(value)}: must be a group of keys, not a value", key)
+                raise SettingError(f"{key} = {shown(value)}: must be a group of keys, not a value", key)
             _check_keys(value, hint, root, f"{key}.")
         elif _is_group(entry) and isinstance(value, list | tuple):
             for i, item in enumerate(value):
@@ -147,31 +154,52 @@ def _check_entry(item: Any, kind: Any, key: str, where: str) -> None:
     """Refuse keys that nobody declared in one of a list of groups."""
     names = list(hints(kind))
     if not isinstance(item, Mapping):
-        raise SettingError(f"{where} = {_shown(item)}: must be {_allowed(kind)}", key)
+        raise SettingError(f"{where} = {shown(item)}: must be {_allowed(kind)}", key)
     for name in item:
         if name not in names:
-            near = get_close_matches(str(name), names, n=1, cutoff=0.0)[0]
-            raise SettingError(f"unknown key {_shown(name)} in {where}; did you mean {near!r}?", key)
+            near = nearest(str(name), names, cutoff=0.0)
+            raise SettingError(f"unknown key {shown(name)} in {where}; did you mean {near!r}?", key)
 
 
 def _plain(value: Any, path: Path) -> Any:
-    """Return the same value of nothing but groups, lists, finite numbers and text."""
+    """Return the same value of nothing but groups, lists, finite numbers and text, of a size that data of ours has."""
+    if isinstance(value, list | tuple | Mapping):
+        _check_size(value, path)
     if isinstance(value, Mapping):
         return {_name(name, path): _plain(item, (*path, name)) for name, item in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(item, (*path, i)) for i, item in enumerate(value)]
-    if value is None or isinstance(value, bool) or _is_text(value):
+    if value is None or isinstance(value, bool) or (_is_text(value) and len(value) <= LONGEST_TEXT):
         return value
     if isinstance(value, Integral) and abs(int(value)) <= LARGEST:
         return int(value)
-    if isinstance(value, Real) and not isinstance(value, Integral) and isfinite(value):
+    if isinstance(value, Real) and not isinstance(value, Integral) and _is_ordinary(float(value)):
         return float(value)
     raise _OddError(*path)
 
 
+def _check_size(value: Any, path: Path) -> None:
+    """Refuse a list or group that is longer or deeper than data of ours is."""
+    groups = isinstance(value, Mapping) or any(isinstance(item, Mapping) for item in value)
+    most = MOST_GROUPS if groups else MOST_ENTRIES
+    if len(value) > most:
+        raise SettingError(f"{_key(path)}: has {len(value)} entries; it must have {most} at most", _key(path))
+    if len(path) > DEEPEST:
+        raise SettingError(f"{_key(path)}: is nested too deep", _key(path))
+
+
+def _key(path: Path) -> str:
+    """Return a path as it is written, requirements[0].key."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)[1:]
+
+
+def _is_ordinary(value: float) -> bool:
+    return value == 0.0 or SMALLEST_NUMBER <= abs(value) <= LARGEST_NUMBER  # NaN is not
+
+
 def _name(name: Any, path: Path) -> str:
     if not _is_text(name):
-        raise SettingError(f"{_shown(name)} is no name", ".".join(map(str, path)))
+        raise SettingError(f"{shown(name)} is no name", ".".join(map(str, path)))
     return str(name)
 
 
@@ -200,20 +228,17 @@ def _blame(kind: Any, values: Any, path: Path) -> SettingError:
         else:
             break
         value = value[part]
-    return SettingError(f"{key} = {_shown(value)}: must be {_allowed(hint)}{_nearest(hint, value)}", top)
+    return SettingError(f"{key} = {shown(value)}: must be {_allowed(hint)}{_remark(hint, value)}", top)
 
 
-def _shown(value: Any) -> str:
-    """Return the value, shortened; repr of a whole number of thousands of digits is refused by Python."""
-    try:
-        return _SHORT.repr(value)
-    except ValueError:
-        return "a number of thousands of digits"
-
-
-def _nearest(hint: Any, value: Any) -> str:
-    near = get_close_matches(value, list(_choices(hint)), n=1, cutoff=0.5) if isinstance(value, str) else []
-    return f"; did you mean {near[0]!r}?" if near else ""
+def _remark(hint: Any, value: Any) -> str:
+    """Return what helps beside what is allowed."""
+    if isinstance(value, float) and isfinite(value) and not _is_ordinary(value) and " from " not in _allowed(hint):
+        return f", 0 or from {SMALLEST_NUMBER:g} to {LARGEST_NUMBER:g} in magnitude"
+    if isinstance(value, str) and len(value) > LONGEST_TEXT:
+        return f" of at most {LONGEST_TEXT} characters" if hint is str else ""
+    near = nearest(value, _choices(hint)) if isinstance(value, str) else None
+    return f"; did you mean {near!r}?" if near else ""
 
 
 def _choices(hint: Any) -> Iterator[str]:

@@ -10,7 +10,7 @@ import pytest
 from sensors import presets
 from sensors.bench import on_bench
 from sensors.bench_log import read_bench_log
-from sensors.catalogue import FOLDER, accelerometer
+from sensors.catalogue import FOLDER, accelerometer, sheet
 from sensors.noise_fit import Coefficient
 from uavsim.studies.bench import Bench, put_on_bench
 from uavsim.views import datasheets
@@ -37,14 +37,14 @@ def test_a_preset_shows_every_value_with_unit_and_source(name: str, capsys: Capt
     datasheets.print_preset(name)
     out = capsys.readouterr().out
     head, body = out.split("\n\n", 1)
-    sheet = datasheets._datasheet(name)
-    assert head.splitlines() == [f"{name}: {sheet['part']}", sheet["document"]]
+    file = sheet(name)
+    assert head.splitlines() == [f"{name}: {file['part']}", file["document"]]
     assert widest(body) <= 80
-    assert body.count("…") == sum(source.count("…") for source in sheet["sources"].values())  # nothing is cut
+    assert body.count("…") == sum(source.count("…") for source in file["sources"].values())  # nothing is cut
     flat = re.sub(r"\W+", "", body)
-    for key in sheet["values"]:
+    for key in file["values"]:
         assert datasheets._words(key) in body
-    for source in sheet["sources"].values():
+    for source in file["sources"].values():
         assert re.sub(r"\W+", "", source)[:12] in flat
     assert "_" not in "".join(line.split("  ")[0] for line in body.splitlines())
 
@@ -63,8 +63,8 @@ def test_units_of_a_preset_are_those_that_are_read(capsys: Capture) -> None:
 def test_every_unit_belongs_to_a_key_that_exists() -> None:
     keys: set[str] = set()
     for file in FOLDER.glob("*.toml"):
-        sheet = datasheets._datasheet(file.stem)
-        keys |= {*sheet["values"], *(key for mode in sheet.get("modes", []) for key in mode)}
+        part = sheet(file.stem)
+        keys |= {*part["values"], *(key for mode in part.get("modes", []) for key in mode)}
     assert set(datasheets.PRESET_UNITS) <= keys
     without = {
         "default_mode", "default_filter", "filters", "poles", "iir_coefficients", "iir_weights", "scale", "scale_limit",

@@ -16,6 +16,7 @@ from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
 from uavsim.cli.survey import survey
 from uavsim.cli.tune import tune
+from uavsim.views.text import message
 
 COMMANDS = (scenarios, fly, replay, sensors, roc, tune, survey, paper, bench)
 """In the order of the help."""
@@ -81,6 +82,6 @@ def main() -> None:
     sys.exit(status if isinstance(status, int) else DONE)
 
 
-def _complain(message: str) -> int:
-    typer.echo("Error: " + " ".join(message.split()), err=True)
+def _complain(problem: str) -> int:
+    typer.echo(message(f"Error: {problem}"), err=True)
     return WRONG_INPUT

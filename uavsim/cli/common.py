@@ -3,11 +3,14 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from uavsim.views.text import message
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -26,6 +29,13 @@ NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw no plots.")]
 
 class WrongInputError(Exception):
     """Something that the user gave and that cannot be; one line."""
+
+
+def finite(number: float | None) -> float | None:
+    """Refuse a number of an option that is none or infinite: both pass any test for being too large."""
+    if number is not None and not isfinite(number):
+        raise typer.BadParameter(f"{number} is not a finite number")
+    return number
 
 
 @contextmanager
@@ -86,9 +96,10 @@ class Bar:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-        columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+        what = TextColumn("{task.description}", markup=False)
+        columns = (what, BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
         progress = Progress(*columns, console=Console(stderr=True), transient=True)
-        progress.add_task(self._what, total=1.0)
+        progress.add_task(message(self._what, 60), total=1.0)
         progress.start()
         return progress
 

@@ -1,13 +1,12 @@
 """`uavsim roc`: operating curves of launch detectors on the same signals."""
 
 from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, finite, folder, user_input
 
 if TYPE_CHECKING:
     from uavsim.onboard.launch import DetectorSettings
@@ -21,11 +20,13 @@ def roc(
     *,
     detectors: Annotated[str | None, typer.Option(metavar="A,B,...", help="Kinds of detector; all without it.")] = None,
     hours: Annotated[
-        float, typer.Option(min=0.01, max=1e5, help="Of the disturbance mix; a quarter of others.")
+        float, typer.Option(min=0.01, max=1e5, callback=finite, help="Of the disturbance mix; a quarter of others.")
     ] = 20.0,
     trials: Annotated[int, typer.Option(min=1, max=10_000_000, help="Launches.")] = 1000,
     cells: Annotated[int, typer.Option(min=0, max=1_000_000, help="Launches in each cell of the comparison.")] = 200,
-    sigma: Annotated[float, typer.Option(min=0.0, max=20.0, help="Noise of the launches that are drawn, g.")] = 0.3,
+    sigma: Annotated[
+        float, typer.Option(min=0.0, max=20.0, callback=finite, help="Noise of the launches that are drawn, g.")
+    ] = 0.3,
     scenario: Annotated[str | None, typer.Option(help="Launches and settings of a scenario, flown in JSBSim.")] = None,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Draws launches and disturbances.")] = 1,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
@@ -88,6 +89,7 @@ def roc(
 
 def kinds_of(text: str | None) -> list[str]:
     """Kinds of detector from `A,B`; all of them without it."""
+    from sensors.choice import nearest, shown
     from uavsim.studies.operating import KINDS
 
     if text is None:
@@ -95,9 +97,9 @@ def kinds_of(text: str | None) -> list[str]:
     kinds = [part.strip() for part in text.split(",")]
     for kind in kinds:
         if kind not in KINDS:
-            near = get_close_matches(kind, KINDS, n=1, cutoff=0.4)
-            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(KINDS)}"
-            raise typer.BadParameter(f"unknown detector {kind[:40]!r}; {hint}", param_hint="--detectors")
+            near = nearest(kind, KINDS, cutoff=0.4)
+            hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
+            raise typer.BadParameter(f"unknown detector {shown(kind)}; {hint}", param_hint="--detectors")
     if len(set(kinds)) != len(kinds):
         raise typer.BadParameter(f"{text[:60]!r} names a detector twice", param_hint="--detectors")
     return kinds

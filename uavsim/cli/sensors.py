@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, finite, folder, user_input
 
 
 def sensors(
@@ -13,15 +13,19 @@ def sensors(
         str | None, typer.Argument(help="A preset or your own TOML file; without it all are listed.")
     ] = None,
     *,
-    hours: Annotated[float, typer.Option(help="Length of the simulated record, h.")] = 3.0,
+    hours: Annotated[float, typer.Option(callback=finite, help="Length of the simulated record, h.")] = 3.0,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Draws the unit and its noise.")] = 1,
     unit: Annotated[str, typer.Option(help="Which unit: random, typical or ideal.")] = "random",
-    range_g: Annotated[float | None, typer.Option("--range-g", help="An accelerometer's range, g.")] = None,
-    rate: Annotated[float | None, typer.Option(help="An accelerometer's output rate, Hz.")] = None,
+    range_g: Annotated[
+        float | None, typer.Option("--range-g", callback=finite, help="An accelerometer's range, g.")
+    ] = None,
+    rate: Annotated[float | None, typer.Option(callback=finite, help="An accelerometer's output rate, Hz.")] = None,
     low_pass: Annotated[str | None, typer.Option("--filter", help="An accelerometer's low-pass.")] = None,
     mode: Annotated[str | None, typer.Option(help="A pressure sensor's oversampling.")] = None,
-    iir: Annotated[int | None, typer.Option(help="A pressure sensor's filter coefficient.")] = None,
-    noise_scale: Annotated[float, typer.Option(help="Factor on the white noise.")] = 1.0,
+    iir: Annotated[
+        int | None, typer.Option(min=0, max=1_000_000, help="A pressure sensor's filter coefficient.")
+    ] = None,
+    noise_scale: Annotated[float, typer.Option(callback=finite, help="Factor on the white noise.")] = 1.0,
     compare: Annotated[Path | None, typer.Option(help="Your bench log, CSV, SI: t and fx,fy,fz or pressure.")] = None,
     mapping: Annotated[
         str | None, typer.Option("--map", metavar="OURS=THEIRS,...", help="Your columns, as t=time,fx=ax*9.80665.")

@@ -1,12 +1,11 @@
 """`uavsim tune`: a launch detector's settings for a scenario and a budget of false alarms."""
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, finite, folder, user_input
 from uavsim.cli.roc import load
 
 
@@ -14,7 +13,9 @@ def tune(
     scenario: Annotated[str, typer.Argument(help="A packaged name, a TOML file or a flight's folder.")] = "catapult",
     *,
     detector: Annotated[str | None, typer.Option(metavar="KIND", help="Kind; the scenario's without it.")] = None,
-    false_alarms: Annotated[float, typer.Option(metavar="PER_HOUR", help="Budget in the disturbance mix, 1/h.")] = 0.1,
+    false_alarms: Annotated[
+        float, typer.Option(metavar="PER_HOUR", max=1e6, callback=finite, help="Budget in the disturbance mix, 1/h.")
+    ] = 0.1,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Tuned on; the next one scores.")] = 1,
     trials: Annotated[int, typer.Option(min=10, max=20_000, help="Launches; twice as many score.")] = 200,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
@@ -63,10 +64,11 @@ def tune(
 
 def kind_of(name: str | None) -> str | None:
     """Kind of detector of a name, None without it."""
+    from sensors.choice import nearest, shown
     from uavsim.studies.operating import KINDS
 
     if name is None or name in KINDS:
         return name
-    near = get_close_matches(name, KINDS, n=1, cutoff=0.4)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(KINDS)}"
-    raise typer.BadParameter(f"unknown detector {name[:40]!r}; {hint}", param_hint="--detector")
+    near = nearest(name, KINDS, cutoff=0.4)
+    hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
+    raise typer.BadParameter(f"unknown detector {shown(name)}; {hint}", param_hint="--detector")

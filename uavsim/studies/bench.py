@@ -13,6 +13,7 @@ from sensors.promise import Promise, promises
 from sensors.unit import Unit
 
 MOST_HOURS = 1000.0  # h
+MOST_READINGS = 5e9  # in one record; about an hour of computing
 HOUR = 3600.0  # s
 
 
@@ -60,6 +61,9 @@ def check_hours(description: Description, hours: float) -> None:
     """Make sure that a record of so many hours can be made and says something; ValueError if not."""
     if not 0.0 < hours <= MOST_HOURS:
         raise ValueError(f"{hours!r}: give a number of hours above 0, at most {MOST_HOURS:g}")
+    if hours * HOUR * description.rate > MOST_READINGS:
+        most = MOST_READINGS / HOUR / description.rate
+        raise ValueError(f"{hours:g} h are too long: give at most {most:.3g} at {description.rate:g} Hz")
     least = 2.0 * FEWEST / description.rate
     if hours * HOUR < least:
         raise ValueError(f"{hours:g} h are too short: give at least {least / HOUR:.2g} at {description.rate:g} Hz")

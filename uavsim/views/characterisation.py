@@ -17,7 +17,22 @@ from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
 from uavsim.flight import claim, unfinished, write_json
 from uavsim.studies.bench import Bench
-from uavsim.views.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SMALL, TEXT, label, legend, save, sheet
+from uavsim.views.figure import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+    SMALL,
+    TEXT,
+    label,
+    legend,
+    literal,
+    save,
+    sheet,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +77,7 @@ def save_bench(bench: Bench, target: Path, *, overwrite: bool, plots: bool) -> N
 
 def allan(bench: Bench) -> "Figure":
     """Allan deviation with its intervals, and the promise with its terms."""
-    figure, columns = _sheet(bench, f"{words(bench)};  shaded: 68 % intervals")
+    figure, columns = _sheet(bench, f"{words(bench, literal)};  shaded: 68 % intervals")
     shown = [c.allan for c in (*bench.simulated, *bench.compared)]
     low, high = _span([a.deviation for a in shown])
     tau = np.geomspace(min(a.tau[0] for a in shown), max(a.tau[-1] for a in shown), POINTS)
@@ -84,7 +99,7 @@ def allan(bench: Bench) -> "Figure":
 
 def psd(bench: Bench) -> "Figure":
     """Root density, and the promised one with its white level and bandwidth."""
-    figure, columns = _sheet(bench, f"{words(bench)};  one-sided densities")
+    figure, columns = _sheet(bench, f"{words(bench, literal)};  one-sided densities")
     shown = [c.spectrum for c in (*bench.simulated, *bench.compared)]
     low, high = _span([s.density for s in shown])
     first, last = min(s.frequency[0] for s in shown), max(s.frequency[-1] for s in shown)
@@ -107,7 +122,7 @@ def histogram(bench: Bench) -> "Figure":
     """Distribution of the readings about their drift, and the Gaussian of the promised noise."""
     windows = [c.histogram.window for c in (*bench.simulated, *bench.compared)]
     span = " … ".join(dict.fromkeys(f"{window:.3g}" for window in (min(windows), max(windows))))
-    said = f"{words(bench)};  less the means over {span} s"
+    said = f"{words(bench, literal)};  less the means over {span} s"
     figure, columns = _sheet(bench, said, right=0.4)
     for axes, promise, measured in zip(columns, bench.promises, _pairs(bench), strict=True):
         for what, colour, name in measured:
@@ -148,12 +163,14 @@ def short(name: str, most: int = 20) -> str:
     return name if len(name) <= most else f"…{name[1 - most :]}"
 
 
-def words(bench: Bench) -> str:
-    """What was simulated and compared."""
+def words(bench: Bench, named: Callable[[str], str] = str) -> str:
+    """What was simulated and compared; `named` makes a file's name fit for where it is shown."""
     said = f"simulated: {bench.hours:g} h, seed {bench.seed}, {bench.unit} unit"
     if bench.log is None:
         return said
-    return f"{said};  {short(bench.log.name, 24)}: {bench.log.duration / 3600.0:.3g} h at {bench.log.rate:.4g} Hz"
+    return (
+        f"{said};  {named(short(bench.log.name, 24))}: {bench.log.duration / 3600.0:.3g} h at {bench.log.rate:.4g} Hz"
+    )
 
 
 def _sheet(bench: Bench, said: str, right: float = 1.9) -> "tuple[Figure, list[Axes]]":
@@ -169,7 +186,7 @@ def _pairs(bench: Bench) -> list[list[tuple[Characterisation, str, str]]]:
     pairs = [[(channel, BLUE, "simulated")] for channel in bench.simulated]
     assert bench.log is not None or not bench.compared
     for pair, channel in zip(pairs, bench.compared, strict=False):
-        pair.append((channel, RED, short(bench.log.name) if bench.log else ""))
+        pair.append((channel, RED, literal(short(bench.log.name)) if bench.log else ""))
     return pairs
 
 

@@ -1,22 +1,21 @@
 """Sensor presets in the terminal: all of them, one with its sources, and what a record on the bench shows of it."""
 
-import tomllib
 from collections.abc import Callable
 from math import floor, isfinite, log10, sqrt
 from typing import Any
 
 from rich import box
-from rich.markup import escape
 from rich.table import Table
 
-from sensors.catalogue import path_of
+from sensors.catalogue import sheet as sheet_of
 from sensors.characterise import Characterisation
 from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
 from sensors.unit import G0
 from uavsim.studies.bench import Bench
-from uavsim.views.characterisation import short, title, words
-from uavsim.views.terminal import _console, _print, _table, say
+from uavsim.views.characterisation import short, title
+from uavsim.views.characterisation import words as setting
+from uavsim.views.terminal import _console, _print, _table, say, words
 
 PRESET_UNITS = {
     "ranges_g": "g",
@@ -80,7 +79,7 @@ def print_presets() -> None:
 
     width = max(map(len, presets()))
     for name in presets():
-        sheet = _datasheet(name)
+        sheet = sheet_of(name)
         say(f"{name:<{width}}  {sheet['kind']:<13}  {sheet['part']}")
 
 
@@ -95,13 +94,13 @@ def print_preset(name: str) -> None:
     from sensors import preset
 
     part = preset(name)
-    sheet, console = _datasheet(name), _console()
+    sheet, console = sheet_of(name), _console()
     sources = sheet["sources"]
-    _print(console, f"[bold]{escape(part.name)}[/bold]: {escape(sheet['part'])}\n{escape(sheet['document'])}\n")
+    _print(console, words((part.name, "bold"), f": {sheet['part']}\n{sheet['document']}\n"))
     table = _sources_table("value")
     for key, value in sheet["values"].items():
         unit = PRESET_UNITS.get(key, "")
-        table.add_row(_words(key), escape(f"{_plain(value)} {unit}".rstrip()), escape(sources.get(key, "")))
+        table.add_row(_words(key), f"{_plain(value)} {unit}".rstrip(), sources.get(key, ""))
     _print(console, table)
     modes = sheet.get("modes", [])
     if modes:
@@ -111,12 +110,12 @@ def print_preset(name: str) -> None:
         for column in table.columns:
             column.no_wrap = False
         for mode in modes:
-            table.add_row(*(escape(_plain(value)) for value in mode.values()))
+            table.add_row(*(_plain(value) for value in mode.values()))
         _print(console, "", table, "")
         table = _sources_table()
         for key in modes[0]:
             if f"modes.{key}" in sources:
-                table.add_row(_words(key), escape(sources[f"modes.{key}"]))
+                table.add_row(_words(key), sources[f"modes.{key}"])
         _print(console, table)
 
 
@@ -136,10 +135,6 @@ def _words(key: str) -> str:
     return key.replace("_", " ")
 
 
-def _datasheet(name: str) -> dict[str, Any]:
-    return tomllib.loads(path_of(name).read_text(encoding="utf-8"))
-
-
 def _plain(value: Any) -> str:
     """Return a value as text; axes that are alike count once, and a row of a table stands in a pair of brackets."""
     if isinstance(value, list):
@@ -157,8 +152,8 @@ def _together(values: list[str]) -> str:
 def print_bench(bench: Bench) -> None:
     """Print what a part promises, what a simulated record of it shows, and somebody's log if there is one."""
     console = _console()
-    console.print(f"\n[bold]{escape(title(bench))}[/bold]\n{escape(words(bench))}\n")
-    columns = ["", "", "promised", "simulated", *([escape(short(bench.log.name))] if bench.log else [])]
+    console.print(words("\n", (title(bench), "bold"), f"\n{setting(bench)}\n"))
+    columns = ["", "", "promised", "simulated", *([short(bench.log.name)] if bench.log else [])]
     table = _table(columns)
     table.columns[1].justify = "left"
     scale, unit = _SCALES[bench.promises[0].unit]
@@ -174,7 +169,7 @@ def print_bench(bench: Bench) -> None:
             table.add_row("" if i else heading.format(unit=unit), *row)
     _print(console, table, "")
     for note in _notes(bench):
-        console.print(f"Note: {escape(note)}")
+        console.print(f"Note: {note}")
 
 
 def _figure(value: float | None) -> str:

@@ -2,15 +2,23 @@
 
 Truth is black, raw readings are light orange, what the aircraft makes of them is blue, detection is red; phases are
 tinted. The colours are those of Okabe and Ito, which colour-blind readers tell apart.
+
+Text is text: of what stands between dollar signs only our own symbols are drawn as such, a letter with an index as in
+$f_x$ or $p_t - p_s$. Everything else is drawn as it is written (`save`).
 """
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from uavsim.views.text import cut, visible
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
 DPI = 130
 BLACK, GREY, LIGHT, DARK, EARTH = "#000000", "#7f7f7f", "#d9d9d9", "#404040", "#8c6d31"
@@ -20,6 +28,10 @@ PHASES = {"stroke": PURPLE, "transition": GREEN, "cruise": SKY}
 SMALL, TEXT = 8.0, 9.0  # pt
 LINE = 0.15  # in, height of a line of labels
 HEAD = 0.75  # in, height of the two lines of title
+TITLE, SUBTITLE = 120, 400  # characters, beyond which they would leave the sheet
+
+_SYMBOL = re.compile(r"(\$-?[A-Za-z]_[A-Za-z0-9](?: - [A-Za-z]_[A-Za-z0-9])*\$)")
+_DOLLAR = "\ue024"  # stands for a dollar sign of a user's until the figure is drawn; a user's own is made visible
 
 
 def sheet(
@@ -55,8 +67,9 @@ def sheet(
 
     width, height = size
     figure = Figure(figsize=size, dpi=DPI, facecolor="white")
-    figure.text(0.12 / width, 1.0 - 0.12 / height, title, va="top", fontsize=12, fontweight="bold", parse_math=False)
-    figure.text(0.12 / width, 1.0 - 0.36 / height, subtitle, va="top", fontsize=TEXT, color=DARK)
+    head, below = cut(visible(title), TITLE), cut(visible(subtitle, keep=_DOLLAR), SUBTITLE)
+    figure.text(0.12 / width, 1.0 - 0.12 / height, head, va="top", fontsize=12, fontweight="bold", parse_math=False)
+    figure.text(0.12 / width, 1.0 - 0.36 / height, below, va="top", fontsize=TEXT, color=DARK)
     grid = figure.subplots(
         len(rows),
         len(columns),
@@ -131,7 +144,50 @@ def legend(beside: "Axes", *others: "Axes") -> None:
     )
 
 
+def literal(name: str) -> str:
+    """Return a user's name for a label: drawn as it is written, whatever it holds, and never left out of a legend."""
+    shown = visible(name).replace("$", _DOLLAR)
+    return f" {shown}" if shown.startswith("_") else shown  # matplotlib hides what begins with an underscore
+
+
 def save(figure: "Figure", path: Path) -> Path:
-    """Write a figure as PNG, without a trace of when or by what."""
+    """Write a figure as PNG, without a trace of when or by what, and with all text drawn as it is written."""
+    for text in _texts(figure):
+        text.set_text(_drawn(text))
     figure.savefig(path, dpi=DPI, metadata={"Software": None})
     return path
+
+
+def _texts(figure: "Figure") -> "Iterator[Text]":
+    """Yield titles, labels, legends and remarks; what stands at the ticks are numbers and names of our own."""
+    from matplotlib.text import Text
+
+    yield from figure.texts
+    for axes in figure.axes:
+        yield from (child for child in axes.get_children() if isinstance(child, Text))
+        yield from (axes.xaxis.label, axes.yaxis.label)
+        drawn = axes.get_legend()
+        if drawn is not None:
+            yield from drawn.get_texts()
+
+
+def _drawn(text: "Text") -> str:
+    """Return what makes matplotlib draw a text as it is written; letters that its font lacks stand as escapes."""
+    from matplotlib.font_manager import findfont
+
+    there = _letters(findfont(text.get_fontproperties()))
+    written = visible(text.get_text(), keep=f"\n{_DOLLAR}")
+    written = "".join(c if ord(c) in there or c in f"\n{_DOLLAR}" else ascii(c)[1:-1] for c in written)
+    if not text.get_parse_math():
+        return written.replace(_DOLLAR, "$")
+    parts = _SYMBOL.split(written)  # every second one is a symbol
+    parts[::2] = [part.replace("$", r"\$") for part in parts[::2]]
+    return "".join(parts).replace(_DOLLAR, r"\$")
+
+
+@cache
+def _letters(font: str) -> frozenset[int]:
+    """Letters that a font file has."""
+    from matplotlib.font_manager import get_font
+
+    return frozenset(get_font(font).get_charmap())

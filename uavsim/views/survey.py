@@ -19,7 +19,7 @@ from uavsim.flight import claim, unfinished, write_json, write_toml
 from uavsim.studies.survey import Survey, box, choose
 from uavsim.studies.survey.paper_case import curves
 from uavsim.studies.survey.ranking import EQUAL, Rank, pair_error
-from uavsim.views.figure import BLACK, BLUE, DARK, GREY, LIGHT, RED, SMALL, dress, label, sheet
+from uavsim.views.figure import BLACK, BLUE, DARK, GREY, LIGHT, RED, SMALL, dress, label, literal, sheet
 from uavsim.views.figure import save as save_figure
 
 if TYPE_CHECKING:
@@ -265,8 +265,8 @@ def save_map(found: Survey, path: Path) -> None:
     title = f"Where to mount the head: {found.outline.name}"
     subtitle = (
         "Airspeed error, m/s rms, calibrated once, over "
-        f"{', '.join(e.source)}.  Triangles: total, circles: static; hollow: not in the stream all the time, or "
-        "another reason against it"
+        f"{', '.join(map(literal, e.source))}.  Triangles: total, circles: static; hollow: not in the stream all the "
+        "time, or another reason against it"
     )
     figure, grid = sheet(title, subtitle, (2.75, 1.0), size=(11.9, 10.6), right=0.8, share=False, gap=(0.16, 0.1))
     norm, shown = LogNorm(0.01, 5.0), None

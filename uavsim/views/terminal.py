@@ -1,6 +1,8 @@
 """Tables for the terminal: a flight's score, several flights, the cost of a step. Units everywhere.
 
-All fit into 80 columns and are the same lines in a pipe; colours are for terminals that want them.
+All fit into 80 columns and are the same lines in a pipe; colours are for terminals that want them. Text is text: the
+console reads no markup and makes everything visible that it is given (`uavsim.views.text`); what has a style is made
+by `words`.
 """
 
 import os
@@ -11,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 from rich import box
 from rich.console import Console, RenderableType
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.score import launch_axis
 from uavsim.views.faults import told
 from uavsim.views.notes import notes
+from uavsim.views.text import visible
 
 if TYPE_CHECKING:
     from uavsim.flight import Flight
@@ -30,7 +33,10 @@ QUANTILES = {"5 %": 0.05, "median": 0.50, "95 %": 0.95}
 
 
 class _Console(Console):
-    """Standard output that outlives its reader, as in `uavsim fly | head -1`."""
+    """Standard output to which text is text, and that outlives its reader, as in `uavsim fly | head -1`."""
+
+    def render_str(self, text: str, **options: Any) -> Text:  # every plain text, in tables too, comes through here
+        return super().render_str(visible(text, keep="\n"), **options)
 
     def on_broken_pipe(self) -> None:
         self.quiet = True
@@ -44,11 +50,19 @@ def mute() -> None:
 
 def say(text: str) -> None:
     """Print one line as it is."""
-    _console().print(escape(text), soft_wrap=True)
+    _console().print(visible(text), soft_wrap=True)
+
+
+def words(*parts: str | tuple[str, str]) -> Text:
+    """Return text of which some parts, (text, style), have a style."""
+    shown = (visible(part if isinstance(part, str) else part[0], keep="\n") for part in parts)
+    return Text.assemble(
+        *((text, "" if isinstance(part, str) else part[1]) for text, part in zip(shown, parts, strict=True))
+    )
 
 
 def _console() -> Console:
-    console = _Console(highlight=False)
+    console = _Console(highlight=False, markup=False, emoji=False)
     console.width = max(NARROWEST, min(console.width, WIDEST))
     return console
 
@@ -56,7 +70,7 @@ def _console() -> Console:
 def _print(console: Console, *parts: RenderableType) -> None:
     """Print tables within the width, and text in lines of its own that only a reader may break."""
     for part in parts:
-        console.print(part, soft_wrap=isinstance(part, str))
+        console.print(part, soft_wrap=isinstance(part, str | Text))
 
 
 def _table(columns: Iterable[str]) -> Table:
@@ -85,8 +99,8 @@ def print_score(flight: "Flight") -> None:
     verdict = "as expected" if right else f"expected: {score['expected']}"
     if not all(r["met"] for r in score["requirements"]):
         verdict += "; a requirement is not met"
-    outcome = f"[bold {'green' if right else 'red'}]{score['outcome']}[/]"
-    head = f"\n[bold]{escape(flight.scenario['name'])}[/bold], seed {score['seed']}: {outcome} ({verdict})\n"
+    outcome = (score["outcome"], f"bold {'green' if right else 'red'}")
+    head = words("\n", (flight.scenario["name"], "bold"), f", seed {score['seed']}: ", outcome, f" ({verdict})\n")
     _print(console, head, _launch_table(flight), "")
     flew = flight.scenario["plant"]["kind"] == AIRCRAFT
     if flew or score["airspeed"]["samples"]:
@@ -95,7 +109,7 @@ def print_score(flight: "Flight") -> None:
     if score["requirements"]:
         _print(console, _requirements_table(score["requirements"]), "")
     for note in notes(flight):
-        console.print(f"Note: {escape(note)}")
+        console.print(f"Note: {note}")
 
 
 def _launch_table(flown: "Flight") -> Table:
@@ -168,7 +182,8 @@ def _requirements_table(requirements: list[dict[str, Any]]) -> Table:
     table.columns[0].no_wrap = False
     for r in requirements:
         found = "–" if r["value"] is None else f"{r['value']:.4g}"
-        table.add_row(escape(r["key"]), _wanted(r["minimum"], r["maximum"]), found, "yes" if r["met"] else "[red]NO[/]")
+        met = "yes" if r["met"] else words(("NO", "red"))
+        table.add_row(r["key"], _wanted(r["minimum"], r["maximum"]), found, met)
     return table
 
 
@@ -191,7 +206,7 @@ def print_batch(flown: "Batch") -> None:
     summary = ", ".join(f"{count} {name}" for name, count in runs["outcome"].value_counts().items())
     false = int(runs["launch.false_detections"].sum())
     unmet = int((~runs["requirements.met"].astype(bool)).sum())
-    _print(console, f"\n[bold]{escape(flown.scenario.name)}[/bold], {_flights(len(runs))}: {summary}\n")
+    _print(console, words("\n", (flown.scenario.name, "bold"), f", {_flights(len(runs))}: {summary}\n"))
     table = _quantile_table(flown)
     if table.row_count:
         _print(console, table, "")
@@ -235,13 +250,13 @@ def _quantile_table(flown: "Batch") -> Table:
     return table
 
 
-def _with_band(quantile: "QuantileBand", digits: int) -> str:
+def _with_band(quantile: "QuantileBand", digits: int) -> Text:
     """Return a quantile above its band, which few flights leave open on a side."""
     low, high = (_number(bound, digits) for bound in (quantile.low, quantile.high))
     band = f"{low}…{high}"
     if quantile.low is None or quantile.high is None:
         band = f"≥ {low}" if quantile.low is not None else f"≤ {high}" if quantile.high is not None else "–"
-    return f"{_number(quantile.value, digits)}\n[dim]{band}[/]"
+    return words(f"{_number(quantile.value, digits)}\n", (band, "dim"))
 
 
 # -- cost ------------------------------------------------------------------------------------------------------------

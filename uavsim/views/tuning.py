@@ -101,7 +101,7 @@ def print_tuned(found: Tuned) -> None:
     _print(console, f"budget of {found.budget:g} false alarms an hour: {kept} on the fresh seed")
     if found.tuned.launches["detected"] == 0:
         _print(console, f"no launch is detected: {level_key(found.before.kind)} within the budget is too high for them")
-    _print(console, "", lines(found).replace("[", r"\["))
+    _print(console, "", lines(found))
 
 
 def _number(value: float, factor: float, digits: int) -> str:

@@ -3,7 +3,6 @@
 Structural frame: x aft from the nose, y right, z up, m; angles in degrees where a name ends in _deg.
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,11 +10,14 @@ from math import isfinite, radians
 from pathlib import Path
 from typing import Any
 
+from sensors.data_files import read_toml
 from uavsim.plants.hangar import aircraft, hangar
 from uavsim.studies.survey.section import naca_four_digit
 
 LARGEST = 100.0  # m; no UAV is larger
 MOST_INCIDENCE = 30.0  # deg
+MOST_STATIONS = 200  # of a fuselage: each is a ring of panels
+LONGEST_NAME = 100  # characters
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,14 +103,7 @@ def read_outline(name: str) -> Outline:
     """
     path = _find(name)
     try:
-        with path.open("rb") as file:
-            data = tomllib.load(file)
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path}: {error}") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: not a text in UTF-8") from None
-    try:
-        return _outline(data, path.parent.name)
+        return _outline(read_toml(path), path.parent.name)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
@@ -132,8 +127,10 @@ def _outline(data: Mapping[str, Any], folder: str) -> Outline:
     if diameters[0] != 0.0 or any(d <= 0.0 for d in diameters[1:-1]) or diameters[-1] < 0.0:
         raise ValueError("fuselage.diameter: 0 at the nose and above 0 behind it")
     title = data.get("name", folder)
+    if not isinstance(title, str) or len(title) > LONGEST_NAME:
+        raise ValueError(f"name: must be text of at most {LONGEST_NAME} characters")
     return Outline(
-        str(title), stations, diameters, _wing(_group(data, "wing")), _tail(data), _fin(data),
+        title, stations, diameters, _wing(_group(data, "wing")), _tail(data), _fin(data),
         "sweep_folded_deg" in data["wing"],
     )  # fmt: skip
 
@@ -212,6 +209,8 @@ def _column(group: Mapping[str, Any], key: str) -> tuple[float, ...]:
         isinstance(each, bool) or not isinstance(each, (int, float)) or not abs(each) <= LARGEST for each in value
     ):
         raise ValueError(f"{key}: must be a list of numbers, each from -{LARGEST:g} to {LARGEST:g}")
+    if len(value) > MOST_STATIONS:
+        raise ValueError(f"{key}: has {len(value)} numbers; it must have {MOST_STATIONS} at most")
     return tuple(float(each) for each in value)
 
 

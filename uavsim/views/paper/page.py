@@ -2,12 +2,12 @@
 
 from base64 import b64encode
 from collections.abc import Iterable, Mapping
-from html import escape
 from pathlib import Path
 from typing import Any
 
 from uavsim import __version__
 from uavsim.studies.paper import NOT_REPRODUCED, Entry
+from uavsim.views.text import in_html as escape
 
 STYLE = """
 body { font: 15px/1.5 sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem }
