@@ -16,6 +16,7 @@ from sensors.choice import choose, shown
 from sensors.data_files import parse_toml, read_text
 from sensors.datasheet_check import check
 from sensors.pressure_description import PressureDescription, PressureMode
+from sensors.sheet import Sheet
 from sensors.unit import G0, Triple
 
 Description = AccelerometerDescription | PressureDescription
@@ -54,7 +55,25 @@ def preset(name: str) -> Description:
     >>> preset("lsm6dso32").select(range_g=16, rate=416).bandwidth
     208.0
     """
-    return read(path_of(name))
+    return _read(name.path, name.text) if isinstance(name, Sheet) else read(path_of(name))
+
+
+def captured(name: str) -> str:
+    """Return the name of a shipped part as it is, and the path of a file of one's own with what stands in it.
+
+    Raises
+    ------
+    ValueError
+        As of `preset`.
+    """
+    if isinstance(name, Sheet):
+        return name
+    path = path_of(name)
+    if path.parent == FOLDER:
+        return name
+    own = Sheet(str(path.resolve()), read_text(path))
+    preset(own)
+    return own
 
 
 def accelerometer(name: str) -> AccelerometerDescription:
@@ -78,7 +97,15 @@ def pressure_sensor(name: str) -> PressureDescription:
 def read(path: Path) -> Description:
     """Return the description in one TOML file; ValueError, with file and key, if it is not as it should be."""
     try:
-        return _described(path.stem, read_text(path))
+        text = read_text(path)
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from error
+    return _read(path, text)
+
+
+def _read(path: Path, text: str) -> Description:
+    try:
+        return _described(path.stem, text)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from error
 

@@ -7,6 +7,7 @@ import copy
 import datetime
 import errno
 import os
+import shutil
 import re
 import tomllib
 from collections.abc import Mapping
@@ -86,7 +87,7 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
         ("vibration.band_hz=[1]", "must be a list of 2, each a number above 0"),
         ("vibration.band_hz=[200, 5]", "vibration.band_hz = [200, 5]: must be a band, low first"),
         ("accelerometer.bias=[1, 2]", "must be a number from -10000 to 10000 or a list of 3, each a number from"),
-        ("accelerometer.preset=adxl34", "--set: accelerometer: preset 'adxl34' is unknown; nearest: adxl345"),
+        ("accelerometer.preset=adxl34", "--set: accelerometer.preset: preset 'adxl34' is unknown; nearest: adxl345"),
         ("accelerometer.preset=bmp390", "is a pressure sensor, not an accelerometer"),
         ("air_data.total.preset=adxl345", "--set: air_data.total: preset 'adxl345' is an accelerometer"),
         ("air_data.static.mode=x5/x5", "--set: air_data.static: bmp390: mode 'x5/x5' is unknown; nearest:"),
@@ -311,8 +312,8 @@ def test_an_own_aircraft_is_found_from_anywhere_once_it_is_read(
     own = tmp_path / "own"
     own.symlink_to(hangar() / "fw8")
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "bird").mkdir()
-    (tmp_path / "bird" / "bird.xml").touch()
+    shutil.copytree(hangar() / "fw8", tmp_path / "bird")
+    (tmp_path / "bird" / "fw8.xml").rename(tmp_path / "bird" / "bird.xml")
     read = load_scenario("catapult", overrides=["aircraft.model=bird"])
     assert read.aircraft.model == str(tmp_path / "bird")
     monkeypatch.chdir("/")

@@ -1,6 +1,7 @@
 """One flight's record: its tables, events and score, and the folder they are kept in.
 
-A folder holds ``scenario.toml`` (resolved; flies again to the same result), ``score.json``, ``events.json`` (what the
+A folder holds ``scenario.toml`` (resolved; flies again to the same result), ``inputs/`` where something came from
+outside (`uavsim.inputs`), ``score.json``, ``events.json`` (what the
 aircraft noticed and did, by its own clock), one Parquet file a table with the unit of each column in its field
 metadata, and ``plots/``. It is written under another name and takes its place when it is whole.
 """
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sensors.data_files import LARGEST, parse_json, parse_toml, read_text
+from uavsim import inputs
 from uavsim.truth import UNITS as TRUTH_UNITS
 
 if TYPE_CHECKING:
@@ -42,7 +44,7 @@ UNITS: dict[str, dict[str, str]] = {
 """The tables of a flight: their columns and units, in order; what has no unit has an empty one."""
 
 OURS = {f"{table}.parquet" for table in (*UNITS, "runs")} | {
-    *("scenario.toml", "score.json", "events.json", "campaign.json", "report.html", "plots", "flights")
+    *("scenario.toml", "score.json", "events.json", "campaign.json", "report.html", "plots", "flights", inputs.FOLDER)
 }
 """What is in the folders of flights and campaigns, and so is replaced when one is written again."""
 
@@ -128,7 +130,7 @@ class Flight:
         target = Path(path)
         claim(target, overwrite=overwrite)
         with unfinished(target) as folder:
-            write_toml(folder / "scenario.toml", self.scenario)
+            write_toml(folder / "scenario.toml", inputs.write(folder, self.scenario))
             write_json(folder / "score.json", self.score)
             write_json(folder / "events.json", self.events)
             for name, table in self.tables.items():
@@ -149,7 +151,11 @@ def load(path: str | os.PathLike[str]) -> Flight:
     folder = Path(path)
     if not folder.is_dir():
         raise ValueError(f"{folder} is not a flight's folder: there is no such folder")
-    scenario = _read(folder / "scenario.toml", parse_toml, dict)
+    recorded = _read(folder / "scenario.toml", parse_toml, dict)
+    try:
+        scenario = inputs.read(folder, recorded)
+    except ValueError as error:
+        raise ValueError(f"{folder / 'scenario.toml'}: {error}") from None
     events = _read(folder / "events.json", parse_json, list)
     score = _read(folder / "score.json", parse_json, dict)
     if not all(map(_is_event, events)):

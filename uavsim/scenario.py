@@ -12,29 +12,31 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from annotated_types import Interval
 
-from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings, presets
+from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
+from sensors.catalogue import captured
 from sensors.choice import nearest, shown
 from sensors.data_files import parse_toml, read_toml
 from sensors.settings import Fault, PortFault
 from sensors.vibration import check as check_vibration
-from uavsim import settings
+from uavsim import inputs, settings
 from uavsim.flight import UNITS, without_none
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.onboard.launch.settings import USES, need, unread
+from uavsim.plants.airframe import Airframe, read_airframe
+from uavsim.plants.airframe.properties import COMMANDS
 from uavsim.plants.hangar import find_aircraft, hangar
 from uavsim.plants.rig_settings import PlantSettings, length
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.score import Judged, score
 from uavsim.settings import SettingError
 
-Part = TypeVar("Part", AccelerometerSettings, PressureSettings)
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
 Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout", "completed"]
 
@@ -201,7 +203,11 @@ def load_scenario(
     """
     path = _find(source)
     where = path.stem if path.parent == PACKAGED else str(path)
-    values = {"name": path.stem, **_parsed(path)}
+    recorded = {"name": path.stem, **_parsed(path)}
+    try:
+        values = inputs.read(path.parent, recorded)
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}") from None
     origins: dict[str, str] = {}
     try:
         settings.read(Scenario, values)
@@ -294,13 +300,13 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
     SettingError
         On the first thing that is wrong.
     """
-    scenario = settings.read(Scenario, values)
+    scenario = _with_inputs(settings.read(Scenario, values), values)
     for check in (
-        _check_name, _check_times, _check_sensors, _check_cost, _check_vibration, _check_directions, _check_faults,
-        _check_detector,
+        _check_name, _check_properties, _check_times, _check_sensors, _check_cost, _check_vibration,
+        _check_directions, _check_faults, _check_detector,
     ):  # fmt: skip
         check(scenario)
-    return _with_own_parts_found(_with_aircraft_found(scenario))
+    return scenario
 
 
 def _check_name(s: Scenario) -> None:
@@ -312,34 +318,38 @@ def _check_name(s: Scenario) -> None:
         )
 
 
-def _with_aircraft_found(s: Scenario) -> Scenario:
-    """The same with an own aircraft's path from the root, so that its record flies from anywhere."""
-    try:
-        folder = find_aircraft(s.aircraft.model)
-    except ValueError as error:
-        raise SettingError(f"aircraft.model: {error}", "aircraft.model") from None
+def _with_inputs(s: Scenario, values: Mapping[str, Any]) -> Scenario:
+    """The same with what comes from outside as it was read: by `values`, or now."""
+    for key, capture in ((inputs.AIRCRAFT, _airframe), *((key, captured) for key in inputs.PRESETS)):
+        given = inputs.value_of(values, key)
+        found = inputs.value_of(asdict(s), key) if given is None else given
+        try:
+            s = _replaced(s, key.split("."), capture(found))
+        except ValueError as error:
+            raise SettingError(f"{key}: {error}", key) from None
+    return s
+
+
+def _airframe(model: str) -> str:
+    """An aircraft of one's own with its files, checked; the name of a packaged one."""
+    if isinstance(model, Airframe):
+        return model
+    folder = find_aircraft(model)
+    return model if folder.parent == hangar().resolve() else read_airframe(folder)
+
+
+def _replaced(group: Any, path: list[str], value: Any) -> Any:
+    """The same settings with another value at a path."""
+    name, *rest = path
+    return replace(group, **{name: _replaced(getattr(group, name), rest, value) if rest else value})
+
+
+def _check_properties(s: Scenario) -> None:
     for name in s.aircraft.properties:
-        if name.startswith("simulation/"):
+        if name.startswith(f"{COMMANDS}/"):
             raise SettingError(
                 f"{PROPERTIES}{name}: is a command to JSBSim itself, not a property of an aircraft", PROPERTIES + name
             )
-    if folder.parent == hangar():
-        return s
-    return replace(s, aircraft=replace(s.aircraft, model=str(folder)))
-
-
-def _with_own_parts_found(s: Scenario) -> Scenario:
-    """The same with the paths of presets of one's own from the root."""
-    air = s.air_data
-    return replace(
-        s,
-        accelerometer=_found(s.accelerometer),
-        air_data=replace(air, total=_found(air.total), static=_found(air.static)),
-    )
-
-
-def _found(part: Part) -> Part:
-    return part if part.preset in presets() else replace(part, preset=str(Path(part.preset).resolve()))
 
 
 def _check_times(s: Scenario) -> None:

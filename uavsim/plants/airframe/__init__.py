@@ -11,7 +11,7 @@ from pathlib import Path
 from uavsim.plants.airframe.check import Checked, check_files
 from uavsim.plants.airframe.markup import LARGEST
 
-__all__ = ["Airframe", "read_airframe"]
+__all__ = ["Airframe", "content_of", "read_airframe"]
 
 _KNOWN: dict[Path, "Airframe"] = {}
 
@@ -71,16 +71,16 @@ def read_airframe(folder: Path) -> Airframe:
     """
     folder = folder.resolve()
     known = _KNOWN.get(folder)
-    if known is None or any(_content(folder, path) != content for path, content in known.checked.files.items()):
+    if known is None or any(content_of(folder, path) != content for path, content in known.checked.files.items()):
         try:
-            known = Airframe(str(folder), check_files(folder.name, lambda path: _content(folder, path)))
+            known = Airframe(str(folder), check_files(folder.name, lambda path: content_of(folder, path)))
         except ValueError as error:
             raise ValueError(f"{folder}: {error}") from None
         _KNOWN[folder] = known
     return known
 
 
-def _content(folder: Path, path: str) -> bytes | None:
+def content_of(folder: Path, path: str) -> bytes | None:
     """What stands in a file below a folder; None if there is none.
 
     Raises
