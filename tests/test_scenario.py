@@ -7,8 +7,8 @@ import copy
 import datetime
 import errno
 import os
-import shutil
 import re
+import shutil
 import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict
