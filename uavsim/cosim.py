@@ -369,7 +369,8 @@ def replay(flight: Flight) -> Flight:
     tables = {name: tables[name] for name in flight.tables}
     ended = flight.score.get("outcome", "")
     judged = Judged(scenario.to_dict(), tables, onboard.computer.events, draws.release_time, ended, _versions())
-    return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged))
+    reason = {"reason": flight.score["reason"]} if "reason" in flight.score else {}
+    return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged) | reason)
 
 
 def _flight(simulation: Cosimulation) -> Flight:
@@ -391,7 +392,7 @@ def _flight(simulation: Cosimulation) -> Flight:
         simulation.ended,
         _versions(),
     )
-    result = score(judged)
+    result = score(judged) | ({"reason": plant.failure} if plant.failure else {})
     record = frame("truth", {**truth, "phase": judged.phases()})
     return Flight(scenario, {"truth": record, **tables}, onboard.computer.events, result)
 

@@ -3,9 +3,12 @@
 Every aircraft here is read in a child process that is watched: how it ends, which sockets and files it leaves.
 """
 
+import json
 import os
 import pickle
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import hostile_aircraft as hostile
@@ -14,6 +17,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from jsbsim import FGFDMExec
 
+import uavsim
+from uavsim.cosim import replay
 from uavsim.plants.airframe import read_airframe
 from uavsim.plants.airframe.check import check_files
 from uavsim.plants.airframe.grammar import COMPONENTS, RULES
@@ -257,3 +262,22 @@ def _mutant_ends_well(seed: int, tmp_path: Path) -> None:
 
 
 BASES = {"fw8": hostile.packaged(), "c172x": hostile.complete("c172x"), "f16": hostile.complete("f16")}
+
+
+def test_a_function_that_fails_in_the_air_ends_the_flight_with_a_reason(tmp_path: Path) -> None:
+    """In a process of its own: JSBSim would end it when it is taken down."""
+    index = "<product><value>5</value><property>fcs/wing-pos-norm</property></product>"
+    function = f'<aerodynamics><function name="aero/mine"><switch>{index}<value>1</value></switch></function>'
+    good = hostile.packaged()
+    main = good["fw8.xml"].replace(b"<aerodynamics>", function.encode())
+    folder = hostile.write(good | {"fw8.xml": main}, tmp_path / "fw8")
+    out = tmp_path / "out"
+    command = ["fly", "catapult", "--set", f"aircraft.model={folder}", "--no-plots", "--out", str(out)]
+    done = subprocess.run([sys.executable, "-m", "uavsim.cli", *command], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, "")
+    score = json.loads((out / "score.json").read_text())
+    assert score["outcome"] == "diverged"
+    assert score["reason"].startswith("In file fw8/fw8.xml: line 82 The switch function index")
+    assert "reason: In file fw8/fw8.xml" in done.stdout
+    again = replay(uavsim.load(out)).save(tmp_path / "again")
+    assert (again / "score.json").read_bytes() == (out / "score.json").read_bytes()

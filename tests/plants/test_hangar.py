@@ -76,3 +76,14 @@ def test_an_installed_package_carries_its_aircraft(tmp_path: Path, monkeypatch: 
     assert aircraft() == ["two"]
     assert find_aircraft("two") == inside.resolve()
     assert find_aircraft(str(beside)) == beside.resolve()
+
+
+def test_with_a_slash_it_is_a_path_even_if_a_packaged_one_has_the_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    own = tmp_path / "fw8"
+    own.mkdir()
+    (own / "fw8.xml").touch()
+    assert find_aircraft("./fw8") == own
+    assert find_aircraft("fw8") == hangar.hangar().resolve() / "fw8"

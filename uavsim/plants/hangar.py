@@ -32,20 +32,25 @@ def find_aircraft(model: str) -> Path:
     Parameters
     ----------
     model
-        A packaged name, or the path of a folder ``…/NAME`` that holds ``NAME.xml``.
+        A packaged name, or the path of a folder ``…/NAME`` that holds ``NAME.xml``; with a slash in it, it is a path.
 
     Raises
     ------
     ValueError
         If there is none; the message names the nearest packaged one.
     """
-    for folder in (hangar() / model, Path(os.path.expanduser(model))):  # os.path's do not raise for odd names
+    own = Path(os.path.expanduser(model))  # os.path's, which does not raise for odd names
+    for folder in (own,) if _is_path(model) else (hangar() / model, own):
         if model and os.path.isfile(folder / f"{folder.name}.xml"):
             return folder.resolve()
     known = aircraft()
     near = get_close_matches(model, known, n=1, cutoff=0.3)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise ValueError(f"unknown aircraft {model!r}; {hint}packaged: {', '.join(known)}; or the path of a folder")
+
+
+def _is_path(model: str) -> bool:
+    return any(separator in model for separator in (os.sep, os.altsep) if separator)
 
 
 def find_airframe(model: str) -> Airframe:

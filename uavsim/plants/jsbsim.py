@@ -13,6 +13,7 @@ The only module that imports jsbsim. Facts it rests on:
 """
 
 import ctypes
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -203,7 +204,7 @@ class JsbsimPlant:
             started = self._fdm.run_ic()
         except (BaseError, RuntimeError) as error:
             _leave_up(self._fdm)
-            raise ValueError(f"aircraft.model: {_said(error)}") from error
+            raise ValueError(f"aircraft.model: {_said(error, self.settings.aircraft.model)}") from error
         if not started:
             raise ValueError("aircraft.model: JSBSim cannot start it from rest on the rail")
         self._check_body()
@@ -267,7 +268,7 @@ class JsbsimPlant:
                 self._run()
             except (BaseError, RuntimeError) as error:
                 _leave_up(self._fdm)
-                raise ValueError(f"aircraft.model: {_said(error)}") from error
+                raise ValueError(f"aircraft.model: {_said(error, self.settings.aircraft.model)}") from error
             self.row = self._read()
 
     # -- each step ---------------------------------------------------------------------------------------------------
@@ -285,7 +286,7 @@ class JsbsimPlant:
             self._run()
         except (BaseError, RuntimeError) as error:  # of the aircraft's own functions
             _leave_up(self._fdm)
-            self.failure = _said(error)
+            self.failure = _said(error, self.settings.aircraft.model)
         self.k += 1
         self.t = self.k / self.settings.step_rate
         self.row = row = self._read()
@@ -492,7 +493,7 @@ def _opened(airframe: Airframe, folder: Path) -> FGFDMExec:
         )
     except (BaseError, RuntimeError) as error:
         _leave_up(fdm)
-        raise ValueError(f"aircraft.model: {_said(error).replace(str(folder), str(airframe))}") from error
+        raise ValueError(f"aircraft.model: {_said(error, airframe)}") from error
     if not loaded:
         _leave_up(fdm)
         raise ValueError(f"aircraft.model: JSBSim cannot load {airframe}/{folder.name}.xml")
@@ -508,9 +509,10 @@ def _opened(airframe: Airframe, folder: Path) -> FGFDMExec:
     return fdm
 
 
-def _said(error: Exception) -> str:
-    """What JSBSim says, in one line."""
-    return " ".join(str(error).split())
+def _said(error: Exception, aircraft: str) -> str:
+    """What JSBSim says of an aircraft's file, in one line, whatever folder it was read from."""
+    where = rf"In file .*?/(?={re.escape(Path(aircraft).name)}/)"
+    return re.sub(where, "In file ", " ".join(str(error).split()))
 
 
 def _leave_up(fdm: FGFDMExec) -> None:

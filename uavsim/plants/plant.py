@@ -30,6 +30,8 @@ class Plant(Protocol):
         Whether it is held by a launcher or a rig.
     aloft
         Whether it can go on: the altitude is a number and above the ground.
+    failure
+        What ended it from inside, one line; empty as long as it goes on.
     """
 
     k: int
@@ -37,6 +39,7 @@ class Plant(Protocol):
     force: Vector
     on_rail: bool
     aloft: bool
+    failure: str
 
     @property
     def finite(self) -> bool:

@@ -45,6 +45,8 @@ class PrescribedPlant:
         Specific force beside the truth, m/s², shape (rows, 3), body axes; it is felt and not recorded, as vibration.
     """
 
+    failure = ""  # nothing in it can fail
+
     def __init__(self, run: Run, columns: dict[str, Array], shaking: Array | None = None) -> None:
         self._rate = run.step_rate
         time = run.time

@@ -102,6 +102,8 @@ def print_score(flight: "Flight") -> None:
     outcome = (score["outcome"], f"bold {'green' if right else 'red'}")
     head = words("\n", (flight.scenario["name"], "bold"), f", seed {score['seed']}: ", outcome, f" ({verdict})\n")
     _print(console, head, _launch_table(flight), "")
+    if score.get("reason"):
+        _print(console, words("reason: ", score["reason"]), "")
     flew = flight.scenario["plant"]["kind"] == AIRCRAFT
     if flew or score["airspeed"]["samples"]:
         phases = ("stroke", "transition", "cruise") if flew else ()
