@@ -190,6 +190,10 @@ def attacks(victim: Path) -> dict[str, Files]:
         )
     }
     made["rows"] = good | {"engine/fw8_propeller.xml": _rows(good["engine/fw8_propeller.xml"])}
+    made["doubling functions"] = _functions(40, "<sum><property>{0}</property><property>{0}</property></sum>")
+    made["a chain of functions"] = _functions(4000, "<sum><property>{0}</property><value>1</value></sum>")
+    made["a force by a path"] = good | {"fw8.xml": main.replace(b'name="push"', b'name="../simulation"', 1)}
+    made["a long delay"] = _with(f'<system name="x"><channel name="c">{_SLOW}</channel></system>')
     for tag, text in _IMPOSSIBLE.items():
         made[f"impossible {tag} {text}"] = good | {"fw8.xml": _replaced(main, tag, text)}
     return made
@@ -273,6 +277,19 @@ _BOMB = (
 _IMPOSSIBLE = {
     "ixx": "0", "iyy": "-1", "izz": "50", "emptywt": "0", "wingspan": "0", "wingarea": "-1", "chord": "0",
 }  # fmt: skip
+
+
+_SLOW = '<sensor name="y"><input>fcs/wing-cmd-norm</input><delay type="frames">1e12</delay></sensor>'
+
+
+def _functions(count: int, text: str) -> Files:
+    """Return an aircraft with functions each of which reads the one before."""
+    made = '<function name="aero/f0"><value>1</value></function>'
+    made += "".join(
+        f'<function name="aero/f{k}">{text.format(f"aero/f{k - 1}")}</function>' for k in range(1, count + 1)
+    )
+    good = packaged()
+    return good | {"fw8.xml": good["fw8.xml"].replace(b"<aerodynamics>", f"<aerodynamics>{made}".encode())}
 
 
 def _with(text: str) -> Files:

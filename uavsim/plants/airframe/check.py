@@ -7,7 +7,8 @@ what a grammar cannot say: tables, masses and sizes, functions that would call t
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from uavsim.plants.airframe import circles, figures
+from uavsim.plants.airframe import figures
+from uavsim.plants.airframe.calls import Calls
 from uavsim.plants.airframe.document import check_document
 from uavsim.plants.airframe.engines import check_engine
 from uavsim.plants.airframe.grammar import ENGINES, THRUSTERS
@@ -69,7 +70,7 @@ def check_files(name: str, read: Reader) -> Checked:
     files: dict[str, bytes] = {}
     reads: dict[str, str] = {}
     early: set[str] = set()
-    calls: dict[str, set[str]] = {}
+    calls = Calls()
     waiting = [(f"{name}.xml", frozenset({"fdm_config"}))]
     elements = 0
     while waiting:
@@ -87,13 +88,10 @@ def check_files(name: str, read: Reader) -> Checked:
             if len(files) > MOST_FILES or elements > MOST_ELEMENTS:
                 raise ValueError(f"more than {MOST_FILES} files or {MOST_ELEMENTS} elements in all")
             early |= {plain(element.text) for element in root.all() if element.tag in _EARLY}
-            for function, needed in circles.called(root).items():
-                if function in calls:
-                    raise ValueError(f"the name {function[:80]!r} is given to two functions or tables")
-                calls[function] = needed
+            calls.add(root)
             waiting += [(_place(element, read), _ROOTS[element.tag]) for element in root.all() if _names(element)]
-    if found := circles.circle(calls):
-        raise ValueError(f"{name}.xml: the function {found!r} is worked out from itself")
+    with in_file(f"{name}.xml"):
+        calls.check()
     return Checked(files, reads, frozenset(early))
 
 

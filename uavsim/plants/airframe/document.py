@@ -10,7 +10,16 @@ from difflib import get_close_matches
 
 from uavsim.plants.airframe.grammar import OPERANDS, RULES, Rule, Text
 from uavsim.plants.airframe.markup import Element, MarkupError
-from uavsim.plants.airframe.properties import is_file, is_read, may_be_called, may_name_function, may_set, plain, words
+from uavsim.plants.airframe.properties import (
+    is_file,
+    is_label,
+    is_read,
+    may_be_called,
+    may_name_function,
+    may_set,
+    plain,
+    words,
+)
 from uavsim.plants.airframe.tables import check_table, check_traverse, number
 
 OPERATORS = words("EQ NE GT GE LT LE eq ne gt ge lt le == != > >= < <=")
@@ -147,6 +156,9 @@ _FITS: Mapping[Text, Callable[[str], bool]] = {
     Text.READ: is_read,
     Text.WRITE: lambda text: may_set(text) or ("/" not in text and may_be_called(text)),
     Text.OUTPUT: may_be_called,
+    Text.BITS: lambda text: re.fullmatch("[0-9]{1,2}", text) is not None and 1 <= int(text) <= 32,
+    Text.DELAY: lambda text: (value := number(text)) is not None and 0.0 <= value <= 1000.0,
+    Text.LABEL: is_label,
     Text.FUNCTION: may_name_function,
     Text.VALUE: _is_value,
     Text.TESTS: _are_tests,

@@ -23,10 +23,13 @@ class Text(Enum):
     NAME = "a name"
     NUMBER = "a number"
     WHOLE = "a whole number from 0 to 999"
+    BITS = "a whole number from 1 to 32"
+    DELAY = "a number from 0 to 1000"  # s or frames: JSBSim keeps as many values
     FLAG = "true or false"
     READ = "a property"  # it may be negated by a sign
     WRITE = "a property that an aircraft may set"
     OUTPUT = "the name of a component, or a property that an aircraft may set"
+    LABEL = "a name of letters, digits, spaces and _-."
     FUNCTION = "a name, or a property that is neither JSBSim's nor set by others"
     VALUE = "a number or a property"
     TESTS = "conditions 'property operator value', one a line"
@@ -180,6 +183,12 @@ RULES |= {
     },
 }
 
+_PUSHED: Attributes = {  # JSBSim files what it does with a force under its name
+    "name": Text.LABEL,
+    "unit": words("LBS N LBSFT N*M"),
+    "frame": words("BODY LOCAL WIND INERTIAL"),
+}
+
 # -- metrics, mass, contacts, forces ---------------------------------------------------------------------------------
 
 RULES |= {
@@ -237,21 +246,13 @@ RULES |= {
     "one_function": Rule(children=_each("function"), needs=("function",)),
     "external_reactions": Rule(children=_each("force moment function property") | PROSE),
     "force": Rule(
-        {
-            **NAMED,
-            "unit": frozenset({"LBS", "N", "LBSFT", "N*M"}),
-            "frame": frozenset({"BODY", "LOCAL", "WIND", "INERTIAL"}),
-        },
+        _PUSHED,
         _each("location direction function property=read") | PROSE,
         needs=("location",),
         needs_attributes=("name", "frame"),
     ),
     "moment": Rule(
-        {
-            **NAMED,
-            "unit": frozenset({"LBS", "N", "LBSFT", "N*M"}),
-            "frame": frozenset({"BODY", "LOCAL", "WIND", "INERTIAL"}),
-        },
+        _PUSHED,
         _each("direction function property=read") | PROSE,
         needs_attributes=("name", "frame"),
     ),
@@ -451,7 +452,7 @@ RULES |= {
     ),
     **{f"component {name}": rule for name, rule in COMPONENTS.items()},
     "set": Rule(text=Text.WRITE),
-    "delay": Rule({"type": frozenset({"time", "frames"})}, text=Text.NUMBER),
+    "delay": Rule({"type": frozenset({"time", "frames"})}, text=Text.DELAY),
     "rate_limit": Rule({"sense": frozenset({"incr", "decr"})}, text=Text.VALUE),
     "traverse": Rule(children=_each("setting") | PROSE, some=("setting",)),
     "setting": Rule(children=_all("position time", "number"), needs=("position", "time")),
@@ -465,8 +466,9 @@ RULES |= {
         },
         text=Text.NUMBER,
     ),
+    "bits": Rule(text=Text.BITS),
     "quantization": Rule(
-        {"name": Text.OUTPUT}, {"bits": "whole", "min": "number", "max": "number"}, needs=("bits", "min", "max")
+        {"name": Text.OUTPUT}, {"bits": "bits", "min": "number", "max": "number"}, needs=("bits", "min", "max")
     ),
 }
 

@@ -81,12 +81,16 @@ def may_set(name: str) -> bool:
     return root != "inertia" or rest.startswith("pointmass-")
 
 
+def is_label(name: str) -> bool:
+    """Whether this is a name of words, which JSBSim files away under a property of its own."""
+    return len(name) <= LONGEST and _PLAIN.fullmatch(name) is not None
+
+
 def may_be_called(name: str) -> bool:
     """Whether a component, a function or a table may be called so: by words, which JSBSim files away, or a property."""
     if "/" in name:
         return may_set(name)
-    plain = len(name) <= LONGEST and _PLAIN.fullmatch(name) is not None
-    return plain and name.lower() not in OF_SIMULATOR + OF_AIRCRAFT
+    return is_label(name) and name.lower() not in OF_SIMULATOR + OF_AIRCRAFT
 
 
 def may_name_function(name: str) -> bool:
