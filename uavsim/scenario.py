@@ -23,7 +23,8 @@ from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, Vi
 from sensors.settings import Fault, PortFault
 from sensors.vibration import check as check_vibration
 from uavsim import settings
-from uavsim.flight import UNITS, without_none
+from uavsim.files import without_none
+from uavsim.flight import UNITS
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings

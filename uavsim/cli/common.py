@@ -2,12 +2,15 @@
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from uavsim.folders import Place, TakenError, holds_flights
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -28,6 +31,16 @@ class WrongInputError(Exception):
     """Something that the user gave and that cannot be; one line."""
 
 
+class Interrupted(Exception):  # noqa: N818 (nothing is wrong)
+    """Somebody wants to end; what became of the work, if there is something to say."""
+
+
+def told(error: OSError) -> str:
+    """One line: what, and where."""
+    named = error.filename is not None and error.strerror is not None
+    return f"{error.filename}: {error.strerror}" if named else str(error)
+
+
 @contextmanager
 def user_input(where: str = "") -> Iterator[None]:
     """Count a ValueError of what reads or checks input as the user's; any other is a bug of ours and shows itself."""
@@ -37,16 +50,25 @@ def user_input(where: str = "") -> Iterator[None]:
         raise WrongInputError(f"{where}{error}") from error
 
 
-def folder(out: Path | None, name: str, *, overwrite: bool) -> Path:
-    """Folder to write: the one asked for, or a free one below `output/`."""
-    from uavsim.flight import claim
+@contextmanager
+def folder(out: Path | None, name: str, *, overwrite: bool, kind: type[Place] = Place) -> Iterator[Place]:
+    """Hold the folder to write to the end of the block: the one asked for, or a free one below `output/`."""
+    place = _free(name) if out is None else kind(out, overwrite=overwrite)
+    try:
+        with place:
+            yield place
+    except KeyboardInterrupt:
+        kept = holds_flights(place.folder)
+        raise Interrupted(f"finished flights are in {place.folder}" if kept else "nothing is written") from None
 
-    target, number = out or Path("output") / name, 1
-    while out is None and target.exists() and (not target.is_dir() or any(target.iterdir())):
-        number += 1
-        target = Path("output") / f"{name}-{number}"
-    claim(target, overwrite=overwrite)
-    return target
+
+def _free(name: str) -> Place:
+    """The first place of this name, or with a number, that nobody has."""
+    for number in count(1):
+        place = Place(Path("output") / (name if number == 1 else f"{name}-{number}"))
+        with suppress(TakenError):
+            return place.claim()
+    raise AssertionError
 
 
 def plotter(flight: "Flight") -> Callable[[Path], None]:
@@ -73,7 +95,8 @@ class Bar:
 
     def __exit__(self, *_: object) -> None:
         if self._progress is not None:
-            self._progress.stop()
+            with suppress(OSError):  # the terminal may have been closed
+                self._progress.stop()
 
     def show(self, share: float) -> None:
         """Show that `share`, 0 … 1, is done."""

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from uavsim.files import whole
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -133,5 +135,6 @@ def legend(beside: "Axes", *others: "Axes") -> None:
 
 def save(figure: "Figure", path: Path) -> Path:
     """Write a figure as PNG, without a trace of when or by what."""
-    figure.savefig(path, dpi=DPI, metadata={"Software": None})
+    with whole(path) as part:
+        figure.savefig(part, dpi=DPI, format="png", metadata={"Software": None})
     return path
