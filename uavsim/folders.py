@@ -28,6 +28,8 @@ OURS = frozenset({
 
 UNFINISHED = ".unfinished"
 LOCK, OLD, STALE = ".lock", ".old", ".stale"
+SCRATCH = ".scratch"
+"""Folder in an unfinished one for what a run needs and does not give; it may be made there."""
 FLOWN = ("score.json", "runs.parquet")
 """What is written of a flight, or of several, when it is finished."""
 ATTEMPTS = 100  # to take a folder that others are just removing
@@ -93,7 +95,8 @@ class Place:
             try:
                 if kind is None:
                     self._refuse()
-                    shutil.rmtree(self.folder / STALE, ignore_errors=True)
+                    for name in (STALE, SCRATCH):
+                        shutil.rmtree(self.folder / name, ignore_errors=True)
                     self._settle()
             finally:
                 self._give_up()

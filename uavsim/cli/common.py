@@ -1,5 +1,6 @@
 """What the commands share: the application, its options, progress, the folder to write and how a run ends."""
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from uavsim.folders import Place, TakenError, holds_flights
+from uavsim.folders import SCRATCH, Place, TakenError, holds_flights
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -53,13 +54,43 @@ def user_input(where: str = "") -> Iterator[None]:
 @contextmanager
 def folder(out: Path | None, name: str, *, overwrite: bool, kind: type[Place] = Place) -> Iterator[Place]:
     """Hold the folder to write to the end of the block: the one asked for, or a free one below `output/`."""
-    place = _free(name) if out is None else kind(out, overwrite=overwrite)
+    place = _free(name) if out is None else kind(out, overwrite=overwrite).claim()
     try:
-        with place:
+        with place, _matplotlib_in(place.folder / SCRATCH):
             yield place
     except KeyboardInterrupt:
-        kept = holds_flights(place.folder)
-        raise Interrupted(f"finished flights are in {place.folder}" if kept else "nothing is written") from None
+        raise Interrupted(_kept(place) or "nothing is written") from None
+    except OSError as error:
+        kept = _kept(place)
+        if not kept:
+            raise
+        raise OSError(f"{told(error)}; {kept}") from error
+
+
+def _kept(place: Place) -> str:
+    """Where finished flights are that could not take their place."""
+    return f"finished flights are in {place.folder}" if holds_flights(place.folder) else ""
+
+
+@contextmanager
+def _matplotlib_in(scratch: Path) -> Iterator[None]:
+    """Where matplotlib cannot write what it keeps for the next run, give it a folder that vanishes with this one."""
+    homes = {"XDG_CONFIG_HOME": "~/.config", "XDG_CACHE_HOME": "~/.cache"}
+    kept = (Path(os.environ.get(name) or os.path.expanduser(home)) / "matplotlib" for name, home in homes.items())
+    if "MPLCONFIGDIR" in os.environ or all(map(_may_write, kept)):
+        yield
+        return
+    os.environ["MPLCONFIGDIR"] = str(scratch)
+    try:
+        yield
+    finally:
+        del os.environ["MPLCONFIGDIR"]
+
+
+def _may_write(folder: Path) -> bool:
+    """Whether files can be made in a folder that may have to be made, too."""
+    there = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 
 
 def _free(name: str) -> Place:

@@ -2,8 +2,8 @@
 
 import re
 import shlex
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,10 +21,9 @@ from uavsim.cli.common import (
     folder,
     leave,
     plotter,
-    told,
     user_input,
 )
-from uavsim.folders import Place, holds_flights
+from uavsim.folders import Place
 
 if TYPE_CHECKING:
     from uavsim.cosim import Cosimulation
@@ -118,7 +117,7 @@ def _fly_many(
     from uavsim.views import batch as view
     from uavsim.views import terminal
 
-    with place as held, _kept(held):
+    with place as held:
         ready()  # only to see whether it can be flown
         record = view.Record(held.folder, scenario, numbers)
         with Bar(f"flying {scenario.name}") as bar:
@@ -136,17 +135,6 @@ def _fly_many(
         remark = "" if drawn else "; not all plots are drawn"
         raise Interrupted(f"{len(flown.runs)} of {len(numbers)} flights are kept{remark}")
     leave(_all_as_expected(flown))
-
-
-@contextmanager
-def _kept(held: Place) -> Iterator[None]:
-    """Tell where finished flights are if they cannot be completed."""
-    try:
-        yield
-    except OSError as error:
-        if holds_flights(held.folder):
-            raise OSError(f"{told(error)}; finished flights are in {held.folder}") from error
-        raise
 
 
 def _left(flown: "Batch", given: list[str]) -> str:
