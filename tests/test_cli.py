@@ -2,7 +2,6 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -471,80 +470,6 @@ def test_any_text_is_seeds_or_refused(text: str) -> None:
         return
     assert 0 < len(seeds) == len(set(seeds)) <= MOST_FLIGHTS
     assert all(0 <= seed < 2**63 for seed in seeds)
-
-
-# -- interrupted -----------------------------------------------------------------------------------------------------
-
-FLYING = """
-import sys
-from uavsim import cli, cosim
-advance = cosim.Cosimulation.advance
-def tell(*arguments):
-    print("flying", flush=True)
-    advance(*arguments)
-cosim.Cosimulation.advance = tell
-cli.main()
-"""
-
-COUNTING = """
-import sys
-from uavsim import cli
-from uavsim.cli import common
-if __name__ == "__main__":
-    common.Bar.show = lambda self, share: print(share, flush=True)
-    cli.main()
-"""
-
-
-def test_ctrl_c_in_a_flight_is_130_and_leaves_nothing(tmp_path: Path) -> None:
-    flying = process(FLYING, tmp_path, "fly", "--set", "duration=3600")
-    assert flying.stdout is not None
-    assert flying.stdout.readline() == "flying\n"
-    os.killpg(flying.pid, signal.SIGINT)
-    _, err = flying.communicate(timeout=60)
-    assert (flying.returncode, err) == (130, "")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_ctrl_c_in_several_keeps_what_was_finished(tmp_path: Path) -> None:
-    """As from a terminal, where all processes of the group get the signal."""
-    flying = process(COUNTING, tmp_path, "fly", *SHORT, "--seeds", "1-500", "--out", "here")
-    assert flying.stdout is not None
-    assert [flying.stdout.readline() for _ in range(2)] == ["0.002\n", "0.004\n"]
-    os.killpg(flying.pid, signal.SIGINT)
-    out, err = flying.communicate(timeout=60)
-    runs = pd.read_parquet(tmp_path / "here" / "runs.parquet")
-    assert 2 <= len(runs) < 500
-    assert flying.returncode == 130
-    assert err == f"interrupted: {len(runs)} of 500 flights are kept\n"
-    assert f"catapult, {len(runs)} flights: {len(runs)} timeout" in out
-    assert runs["seed"].is_monotonic_increasing
-    told = json.loads((tmp_path / "here" / "campaign.json").read_text(encoding="utf-8"))
-    assert (told["complete"], told["seeds"]) == (False, list(runs["seed"]))
-    for seed in (p.name for p in (tmp_path / "here" / "flights").iterdir()):
-        assert load(tmp_path / "here" / "flights" / seed).score["seed"] == int(seed)
-
-
-def test_ctrl_c_before_anything_is_finished_leaves_nothing(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupt(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(cosim.Cosimulation, "advance", interrupt)
-    for several in ((), ("--seeds", "1")):
-        assert run("fly", *several) == Result(130, "", "")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_ctrl_c_on_the_bench_leaves_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupt(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(common.Bar, "show", interrupt)
-    result = run("sensors", "bmp390", "--hours", "0.1")
-    assert (result.status, result.err) == (130, "")
-    assert list(tmp_path.iterdir()) == []
 
 
 # -- other people's ends of the pipe ---------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ from pandas.testing import assert_frame_equal
 
 import uavsim
 from uavsim.cosim import CHUNK, Cosimulation, draw, plant_settings, replay
-from uavsim.flight import OURS, UNITS, Flight, claim, load, unfinished
+from uavsim.flight import UNITS, Flight, load
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.scenario import load_scenario
 from uavsim.views.plots import save_plots
@@ -260,35 +260,6 @@ def test_links_stay_and_lead_to_what_is_written(short: Flight, tmp_path: Path) -
         short.save(tmp_path / name)
         assert (tmp_path / name).is_symlink()
         assert everything(tmp_path / to) == FILES
-
-
-@pytest.mark.parametrize("inside", ["file", "file/x", "file/x/y", "loop/x", "n" * 300, "/proc/nowhere/x"])
-def test_a_place_that_cannot_be_written_is_told_before_and_left_as_it_was(tmp_path: Path, inside: str) -> None:
-    (tmp_path / "file").touch()
-    (tmp_path / "loop").symlink_to("loop")
-    before = everything(tmp_path)
-    with pytest.raises(OSError, match=r"is a file, not a folder|cannot be written: "):
-        claim(tmp_path / inside, overwrite=True)
-    assert everything(tmp_path) == before
-
-
-def test_claiming_leaves_nothing(tmp_path: Path) -> None:
-    (tmp_path / "empty").mkdir()
-    for inside in ("a/b/c", "empty", "empty/d"):
-        claim(tmp_path / inside, overwrite=False)
-    assert everything(tmp_path) == {"empty"}
-
-
-def test_parents_that_another_uses_by_then_stay(tmp_path: Path) -> None:
-    place = unfinished(tmp_path / "a" / "b")
-    place.__enter__()
-    (tmp_path / "a" / "other").touch()
-    place.discard()
-    assert everything(tmp_path) == {"a", "a/other"}
-
-
-def test_what_is_replaced_is_what_is_written(folder: Path) -> None:
-    assert FILES < OURS
 
 
 # -- a flight that goes wrong is a result ----------------------------------------------------------------------------

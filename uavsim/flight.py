@@ -3,21 +3,19 @@
 A folder holds ``scenario.toml`` (resolved; flies again to the same result), ``inputs/`` where something came from
 outside (`uavsim.inputs`), ``score.json``, ``events.json`` (what the
 aircraft noticed and did, by its own clock), one Parquet file a table with the unit of each column in its field
-metadata, and ``plots/``. It is written under another name and takes its place when it is whole.
+metadata, and ``plots/``. It is whole or not there, see `uavsim.folders`.
 """
 
-import json
 import os
-import secrets
-import shutil
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sensors.data_files import LARGEST, parse_json, parse_toml, read_text
 from uavsim import inputs
+from uavsim.files import whole, write_json, write_toml
+from uavsim.folders import Place
 from uavsim.truth import UNITS as TRUTH_UNITS
 
 if TYPE_CHECKING:
@@ -42,11 +40,6 @@ UNITS: dict[str, dict[str, str]] = {
     "detector": {"t": "s", "level": "1", "count": "1", "total": "1", "triggered": "", "recognised": ""},
 }
 """The tables of a flight: their columns and units, in order; what has no unit has an empty one."""
-
-OURS = {f"{table}.parquet" for table in (*UNITS, "runs")} | {
-    *("scenario.toml", "score.json", "events.json", "campaign.json", "report.html", "plots", "flights", inputs.FOLDER)
-}
-"""What is in the folders of flights and campaigns, and so is replaced when one is written again."""
 
 
 LARGEST_JSON = 50_000_000  # bytes; a recording of a million detections has as much
@@ -125,19 +118,22 @@ class Flight:
         Raises
         ------
         OSError
-            If there is something already and `overwrite` is false (FileExistsError), or it cannot be written.
+            If there is something already and `overwrite` is false, or another process is writing there
+            (FileExistsError); or it cannot be written.
         """
-        target = Path(path)
-        claim(target, overwrite=overwrite)
-        with unfinished(target) as folder:
-            write_toml(folder / "scenario.toml", inputs.write(folder, self.scenario))
-            write_json(folder / "score.json", self.score)
-            write_json(folder / "events.json", self.events)
-            for name, table in self.tables.items():
-                write_table(folder / f"{name}.parquet", table, UNITS[name])
-            if extra is not None:
-                extra(folder)
-        return target
+        with Place(path, overwrite=overwrite) as place:
+            self.write(place.folder, extra)
+        return place.target
+
+    def write(self, folder: Path, extra: Callable[[Path], None] | None = None) -> None:
+        """Write the files into a folder that is there; `score.json` is the last one: with it the flight is whole."""
+        write_json(folder / "events.json", self.events)
+        for name, table in self.tables.items():
+            write_table(folder / f"{name}.parquet", table, UNITS[name])
+        if extra is not None:
+            extra(folder)
+        write_toml(folder / "scenario.toml", inputs.write(folder, self.scenario))
+        write_json(folder / "score.json", self.score)
 
 
 def load(path: str | os.PathLike[str]) -> Flight:
@@ -223,87 +219,6 @@ def frame_of_floats(name: str, values: list[float]) -> "pd.DataFrame":
     return pd.DataFrame(np.array(values, dtype=float).reshape(-1, len(names)), columns=names)
 
 
-# -- folders that are whole or not there -----------------------------------------------------------------------------
-
-
-def claim(target: Path, *, overwrite: bool) -> None:
-    """Make sure that `target` may be written, by writing there and leaving nothing.
-
-    Raises
-    ------
-    OSError
-        If it is a file, or a folder that is not empty and `overwrite` is false (FileExistsError), or it cannot be
-        written.
-    """
-    try:
-        if os.path.lexists(target) and not target.is_dir() and not target.is_symlink():
-            raise FileExistsError(f"{target} is a file, not a folder")
-        if target.is_dir() and any(target.iterdir()) and not overwrite:
-            raise FileExistsError(f"{target} is not empty; choose another folder or give --overwrite")
-        place = unfinished(target)
-        place.__enter__()
-        place.discard()
-    except OSError as error:
-        if error.strerror is None:
-            raise
-        raise OSError(f"{target} cannot be written: {error.strerror}") from None
-
-
-class unfinished:  # noqa: N801 (a context manager reads as a word)
-    """A folder that becomes `target` when the block ends well, and vanishes if not.
-
-    A new target appears whole, by one rename. One that exists keeps what is not of a flight or a campaign: it may be
-    somebody's home, the folder one stands in, or a mounted one that nobody can rename.
-    """
-
-    def __init__(self, target: Path) -> None:
-        self.target = Path(os.path.realpath(target))  # a link stays, and leads to what is written
-
-    def __enter__(self) -> Path:
-        home = self.target if self.target.is_dir() else self.target.parent
-        self._made = [parent for parent in (home, *home.parents) if not parent.exists()]
-        self.folder = home / f".unfinished-{secrets.token_hex(4)}"
-        try:
-            self.folder.mkdir(parents=True)
-        except BaseException:
-            self.discard()
-            raise
-        return self.folder
-
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        try:
-            if kind is not None:
-                return
-            if self.target.is_dir():
-                self._move_in()
-            else:
-                self.folder.rename(self.target)
-                self._made = []
-        finally:
-            self.discard()
-
-    def _move_in(self) -> None:
-        """Take the place of what was written there before."""
-        new = list(self.folder.iterdir())
-        old = self.folder / ".old"
-        old.mkdir()
-        replaced = OURS | {entry.name for entry in new}
-        _move((entry for entry in list(self.target.iterdir()) if entry.name in replaced), old)
-        _move(new, self.target)
-
-    def discard(self) -> None:
-        """Remove the unfinished folder, and the parents that were made for it."""
-        shutil.rmtree(self.folder, ignore_errors=True)
-        for parent in self._made:
-            with suppress(OSError):  # somebody else may use it by now
-                parent.rmdir()
-
-
-def _move(entries: Iterable[Path], folder: Path) -> None:
-    for entry in entries:
-        entry.rename(folder / entry.name)
-
-
 def write_table(path: Path, table: "pd.DataFrame", units: Mapping[str, str]) -> None:
     """Write a Parquet file with each column's unit in its field metadata (`unit`)."""
     import pyarrow as pa
@@ -311,26 +226,5 @@ def write_table(path: Path, table: "pd.DataFrame", units: Mapping[str, str]) -> 
 
     arrow = pa.Table.from_pandas(table, preserve_index=False)
     fields = [column.with_metadata({"unit": units.get(column.name, "")}) for column in arrow.schema]
-    pq.write_table(arrow.cast(pa.schema(fields, metadata=arrow.schema.metadata)), path)
-
-
-def write_json(path: Path, value: object) -> None:
-    """Write JSON with numbers or null; a value that is not finite is an error of the caller."""
-    text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
-    path.write_text(text, encoding="utf-8", errors="replace")  # a file's name may hold bytes that are no text
-
-
-def write_toml(path: Path, value: Mapping[str, Any]) -> None:
-    """Write TOML; keys whose value is None are left out, as TOML has no null."""
-    import tomli_w
-
-    path.write_text(tomli_w.dumps(without_none(value)), encoding="utf-8", errors="replace")
-
-
-def without_none(value: Any) -> Any:
-    """The same nested value without the keys that hold None."""
-    if isinstance(value, Mapping):
-        return {key: without_none(item) for key, item in value.items() if item is not None}
-    if isinstance(value, list | tuple):
-        return [without_none(item) for item in value]
-    return value
+    with whole(path) as part:
+        pq.write_table(arrow.cast(pa.schema(fields, metadata=arrow.schema.metadata)), part)

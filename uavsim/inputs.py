@@ -14,6 +14,7 @@ from typing import Any
 
 from sensors.data_files import read_text
 from sensors.sheet import Sheet
+from uavsim.files import write_bytes
 from uavsim.plants.airframe import Airframe, content_of
 from uavsim.plants.airframe.check import check_files
 
@@ -51,7 +52,7 @@ def write(folder: Path, scenario: Mapping[str, Any]) -> dict[str, Any]:
         for path, content in _files(place, value).items():
             file = folder / path
             file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(content)
+            write_bytes(file, content)
             hashes[path] = sha256(content).hexdigest()
         _put(recorded, key, place)
     return {**recorded, HASHES: hashes} if hashes else recorded

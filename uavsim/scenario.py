@@ -24,7 +24,8 @@ from sensors.data_files import parse_toml, read_toml
 from sensors.settings import Fault, PortFault
 from sensors.vibration import check as check_vibration
 from uavsim import inputs, settings
-from uavsim.flight import UNITS, without_none
+from uavsim.files import without_none
+from uavsim.flight import UNITS
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings

@@ -9,6 +9,7 @@ import pickle
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import hostile_aircraft as hostile
@@ -33,7 +34,8 @@ def flown(folder: Path, scratch: Path) -> str:
     """Read an aircraft as the plant does, and let JSBSim fly it with all that it can be told."""
     scratch.mkdir()
     try:
-        fdm = load_airframe(read_airframe(folder), scratch)
+        tempfile.tempdir = str(scratch)  # in this child process
+        fdm = load_airframe(read_airframe(folder))
         fdm.set_dt(0.001)
         fdm.set_property_value("ic/h-sl-ft", 300.0)
         fdm.set_property_value("ic/vt-fps", 100.0)
@@ -130,13 +132,16 @@ def test_pipes_and_folders_are_no_files(tmp_path: Path) -> None:
         read_airframe(folder)
 
 
-def test_jsbsim_opens_what_was_checked_whatever_becomes_of_the_original(tmp_path: Path) -> None:
+def test_jsbsim_opens_what_was_checked_whatever_becomes_of_the_original(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = hostile.write(hostile.packaged(), tmp_path / "fw8")
     airframe = read_airframe(folder)
     (folder / "fw8.xml").write_bytes(hostile.attacks(tmp_path / "victim")["output file"]["fw8.xml"])
     scratch = tmp_path / "scratch"
     scratch.mkdir()
-    load_airframe(airframe, scratch)
+    monkeypatch.setattr(tempfile, "tempdir", str(scratch))
+    load_airframe(airframe)
     assert not (tmp_path / "victim").exists()
     assert not list(scratch.iterdir())
     with pytest.raises(ValueError, match="<output>"):

@@ -52,7 +52,7 @@ def test_two_workers_give_what_one_gives(alone: Batch) -> None:
 def test_rows_are_in_the_order_of_the_seeds_however_they_finish(alone: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     def mixed(scenario: Scenario, seeds: list[int], finished: batch.Finished) -> None:
         for position in (2, 0, 1):
-            finished(position, batch._one(scenario, seeds[position], position=position))
+            finished([(position, batch._one(scenario, seeds[position], position=position))])
 
     monkeypatch.setattr(batch, "_in_turn", mixed)
     same(fly_seeds(SHORT, SEEDS, workers=1), alone)
@@ -114,7 +114,7 @@ def test_a_flight_that_is_not_launched_has_no_trace() -> None:
 
 @pytest.mark.parametrize("seeds", [[], [1]])
 def test_few_seeds_need_no_pool(seeds: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch, "ProcessPoolExecutor", None)
+    monkeypatch.setattr(batch, "each", None)
     flown = fly_seeds(SHORT, seeds, workers=2)
     assert len(flown.runs) == len(seeds)
     assert flown.complete
@@ -145,6 +145,7 @@ WITH_CTRL_C = """
             os.killpg(0, signal.SIGINT)  # as a terminal does it: to every process of the group
 
     if __name__ == "__main__":
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background may have it ignored
         scenario = load_scenario("catapult", overrides=["duration=6"])
         flown = fly_seeds(scenario, list(range(1, 41)), workers=2, progress=progress)
         print(flown.complete, len(flown.runs), flown.runs["seed"].is_monotonic_increasing)

@@ -397,8 +397,8 @@ def test_without_neuralfoil_panels_serve_and_asking_for_it_is_an_error(monkeypat
 
 def test_what_is_written(tmp_path):
     found = surveyed()
-    view.save(found, tmp_path / "out", overwrite=False, plots=True)
-    folder = tmp_path / "out"
+    folder = tmp_path
+    view.save(found, folder, plots=True)
     names = {"survey.json", "survey.csv", "position_error.toml", "position_error.csv", "map.png", "pressures.png"}
     assert {path.name for path in folder.iterdir()} == names
     data = json.loads((folder / "survey.json").read_text(encoding="utf-8"))
@@ -419,9 +419,9 @@ def test_what_is_written(tmp_path):
 def test_a_flight_with_the_named_port_errs_as_the_survey_says(tmp_path):
     """`position_error.toml` flown with ideal sensors: the raw airspeed of the cruise is off by −c_s/2, to 0.05 m/s."""
     found = surveyed()
-    view.save(found, tmp_path / "out", overwrite=False, plots=False)
+    view.save(found, tmp_path, plots=False)
     quiet = [f"air_data.{port}.{key}" for port in ("total", "static") for key in ('unit="ideal"', "noise_scale=0")]
-    flight = uavsim.fly(str(tmp_path / "out" / "position_error.toml"), seed=1, overrides=["duration=12", *quiet])
+    flight = uavsim.fly(str(tmp_path / "position_error.toml"), seed=1, overrides=["duration=12", *quiet])
     truth, estimate = flight.truth, flight.estimate
     cruise = estimate[estimate["t"] > flight.score["flight"]["wing_out_time"] + 2.5]
     t = cruise["t"].to_numpy()
@@ -435,8 +435,8 @@ def test_a_flight_with_the_named_port_errs_as_the_survey_says(tmp_path):
 
 def test_the_table_holds_the_shares(tmp_path):
     found = surveyed()
-    view.save(found, tmp_path / "out", overwrite=False, plots=False)
-    with (tmp_path / "out" / "position_error.csv").open(encoding="utf-8", newline="") as file:
+    view.save(found, tmp_path, plots=False)
+    with (tmp_path / "position_error.csv").open(encoding="utf-8", newline="") as file:
         rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
     mach, alpha, beta = (tuple(sorted({row[name] for row in rows})) for name in ("mach", "alpha", "beta"))
     held = {(row["mach"], row["alpha"], row["beta"]): row["static_share"] for row in rows}

@@ -42,9 +42,9 @@ def curve(axes: Axes, name: str) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(x), np.asarray(y)
 
 
-def test_figures_and_numbers_are_written_whole(bench: Bench, tmp_path: Path) -> None:
-    view.save_bench(bench, tmp_path / "new" / "folder", overwrite=False, plots=True)
-    written = sorted((tmp_path / "new" / "folder").iterdir())
+def test_figures_and_numbers_are_written(bench: Bench, tmp_path: Path) -> None:
+    view.save_bench(bench, tmp_path, plots=True)
+    written = sorted(tmp_path.iterdir())
     assert [path.name for path in written] == ["allan.png", "bench.json", "histogram.png", "psd.png"]
     for path in written:
         if path.suffix == ".png":
@@ -53,10 +53,9 @@ def test_figures_and_numbers_are_written_whole(bench: Bench, tmp_path: Path) -> 
                 assert 900 <= image.width <= 2000
                 inked = float((np.asarray(image.convert("L")) < 250).mean())
             assert 0.02 < inked < 0.9
-    view.save_bench(bench, tmp_path / "bare", overwrite=False, plots=False)
+    (tmp_path / "bare").mkdir()
+    view.save_bench(bench, tmp_path / "bare", plots=False)
     assert [path.name for path in (tmp_path / "bare").iterdir()] == ["bench.json"]
-    with pytest.raises(FileExistsError, match="bare is not empty"):
-        view.save_bench(bench, tmp_path / "bare", overwrite=False, plots=False)
 
 
 @pytest.mark.parametrize("draw", view.FIGURES.values(), ids=view.FIGURES)
@@ -153,15 +152,16 @@ def test_bins_of_coarse_readings_are_their_steps() -> None:
 
 def test_a_record_that_does_not_move_is_drawn_all_the_same(tmp_path: Path) -> None:
     still = put_on_bench(on_bench("adxl345", noise_scale=0.0), hours=0.01, seed=1, unit="ideal")
-    view.save_bench(still, tmp_path / "still", overwrite=False, plots=True)
-    numbers = json.loads((tmp_path / "still" / "bench.json").read_text(encoding="utf-8"))
+    view.save_bench(still, tmp_path, plots=True)
+    numbers = json.loads((tmp_path / "bench.json").read_text(encoding="utf-8"))
     assert numbers["simulated"]["fx"]["fit"] is None
 
 
 def test_equal_benches_give_equal_files_and_leave_nothing_behind(tmp_path: Path) -> None:
     before = dict(matplotlib.rcParams)
     for name in ("a", "b"):
-        view.save_bench(on_the_bench("bmp390"), tmp_path / name, overwrite=False, plots=True)
+        (tmp_path / name).mkdir()
+        view.save_bench(on_the_bench("bmp390"), tmp_path / name, plots=True)
     for file in ("allan.png", "psd.png", "histogram.png", "bench.json"):
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
     assert dict(matplotlib.rcParams) == before

@@ -264,46 +264,58 @@ def several(flight: Flight) -> Batch:
     return batch_of([flight, made_up(seed=2), made_up(push=36.0, seed=3)])
 
 
+def recorded(several: Batch, folder: Path) -> batch.Record:
+    """Keep all flights but the last, the second before the first, and then the last."""
+    record = batch.Record(folder, several.scenario, [1, 2, 3])
+    rows = several.runs.to_dict("records")
+    results = [(i, (row, several.traces[i], several.kept.get(row["seed"]))) for i, row in enumerate(rows)]
+    record.keep([results[1], results[0]])
+    record.keep(results[2:])
+    return record
+
+
 def test_a_batch_is_written_with_all_its_parts(several: Batch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[Path] = []
     monkeypatch.setattr(batch, "save_plots", lambda _, folder: drawn.append(folder))  # drawn above already
-    target = tmp_path / "new" / "three"
-    batch.save(several, target, overwrite=False, plots=True)
-    pd.testing.assert_frame_equal(pd.read_parquet(target / "runs.parquet"), several.runs)
-    described = json.loads((target / "campaign.json").read_text())
-    assert described["seeds"] == [1, 2, 3]
+    recorded(several, tmp_path).close(several, plots=True)
+    pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "runs.parquet"), several.runs)
+    described = json.loads((tmp_path / "campaign.json").read_text())
+    assert (described["asked"], described["seeds"]) == ("1-3", [1, 2, 3])
     assert (described["root_seed"], described["complete"], described["wall_time"]) == (1, True, 1.5)
     assert Scenario.from_dict(described["scenario"]) == several.scenario
     assert described["versions"]["numpy"] == np.__version__
     assert set(described["processor"]) == {"machine", "name", "features"}
-    assert [path.name for path in (target / "flights").iterdir()] == ["1"]
-    assert load(target / "flights" / "1").score == several.kept[1].score
-    assert len(drawn) == 1
-    names = {path.name for path in (target / "plots").iterdir()}
+    assert [path.name for path in (tmp_path / "flights").iterdir()] == ["1"]
+    assert load(tmp_path / "flights" / "1").score == several.kept[1].score
+    assert drawn == [tmp_path / "flights" / "1" / "plots"]
+    names = {path.name for path in (tmp_path / "plots").iterdir()}
     assert names == {"latency.png", "airspeed_error.png", "consistency.png", "outcomes.png"}
     for name in names:
-        check_png(target / "plots" / name)
-    assert [path.name for path in target.parent.iterdir()] == ["three"]
+        check_png(tmp_path / "plots" / name)
+    assert {path.name for path in tmp_path.iterdir()} == {"campaign.json", "runs.parquet", "flights", "plots"}
 
 
-def test_a_batch_is_whole_or_not_there(several: Batch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object) -> None:
-        raise RuntimeError("pen broke")
+def test_a_batch_says_from_the_beginning_what_it_is(several: Batch, tmp_path: Path) -> None:
+    batch.Record(tmp_path, several.scenario, [1, 2, 3, 9])
+    described = json.loads((tmp_path / "campaign.json").read_text())
+    assert (described["asked"], described["seeds"], described["complete"]) == ("1-3,9", [], False)
+    assert [path.name for path in tmp_path.iterdir()] == ["campaign.json"]
 
-    target = tmp_path / "three"
-    batch.save(several, target, overwrite=False, plots=False)
-    assert not (target / "plots").exists()
-    with pytest.raises(FileExistsError, match="not empty"):
-        batch.save(several, target, overwrite=False, plots=False)
-    before = (target / "campaign.json").read_bytes()
-    monkeypatch.setattr(batch, "save_batch_plots", fail)
-    monkeypatch.setattr(batch, "save_plots", lambda *_: None)
-    with pytest.raises(RuntimeError):
-        batch.save(several, target, overwrite=True, plots=True)
-    assert (target / "campaign.json").read_bytes() == before
-    with pytest.raises(RuntimeError):
-        batch.save(several, tmp_path / "other", overwrite=False, plots=True)
-    assert [path.name for path in tmp_path.iterdir()] == ["three"]
+
+def test_many_rows_are_kept_in_several_files(several: Batch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file a thousand flights, here two; read together they are the rows in the order of the seeds."""
+    monkeypatch.setattr(batch, "PART", 2)
+    recorded(several, tmp_path)
+    assert sorted(p.name for p in (tmp_path / "runs.parquet").iterdir()) == ["part-00000.parquet", "part-00001.parquet"]
+    pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "runs.parquet"), several.runs)
+
+
+@pytest.mark.parametrize(
+    ("seeds", "text"),
+    [([], ""), ([7], "7"), ([1, 2, 3, 4, 9], "1-4,9"), ([3, 2, 1], "3,2,1"), ([5, 6, 8, 9], "5-6,8-9")],
+)
+def test_seeds_are_told_as_they_are_given(seeds: list[int], text: str) -> None:
+    assert batch.ranges(seeds) == text
 
 
 def test_the_error_axis_is_that_of_the_flight_not_of_still_air_before_it(several: Batch) -> None:

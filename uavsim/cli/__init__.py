@@ -2,12 +2,14 @@
 
 import io
 import sys
-from typing import Annotated
+from contextlib import suppress
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from uavsim.cli.bench import bench
-from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, WrongInputError
+from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, Interrupted, WrongInputError, told
 from uavsim.cli.fly import fly
 from uavsim.cli.paper import paper
 from uavsim.cli.replay import replay
@@ -16,12 +18,25 @@ from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
 from uavsim.cli.survey import survey
 from uavsim.cli.tune import tune
+from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
 COMMANDS = (scenarios, fly, replay, sensors, roc, tune, survey, paper, bench)
 """In the order of the help."""
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+class _Commands(TyperGroup):
+    """Commands whose interrupts come to `main`; click would end the program by itself, each version in its way."""
+
+    def invoke(self, context: Any) -> Any:
+        """Run the command that was asked for."""
+        try:
+            return super().invoke(context)
+        except KeyboardInterrupt:
+            raise Interrupted from None
+
+
+app = typer.Typer(cls=_Commands, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 for _command in COMMANDS:
     app.command()(_command)
 
@@ -64,24 +79,41 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without Greek is no reason to fail
+    with like_ctrl_c():
+        status = _run()
+    sys.exit(status)
+
+
+def _run() -> int:
+    """Return the exit status."""
     try:
         status = app(standalone_mode=False)
         if sys.stdout is not None:
             sys.stdout.flush()
-    except (typer.Abort, KeyboardInterrupt):
-        status = INTERRUPTED
+    except (Interrupted, KeyboardInterrupt, typer.Abort) as interrupted:
+        _say(": ".join(("interrupted", *map(str, interrupted.args))))
+        return INTERRUPTED
     except _UsageError as error:
-        status = _complain(error.format_message())  # type: ignore[attr-defined]  # the class is known at run time only
+        return _complain(error.format_message())  # type: ignore[attr-defined]  # the class is known at run time only
     except (BrokenPipeError, SystemExit):  # the reader of our output left; click ends the program at that
         from uavsim.views.terminal import mute
 
         mute()
-        status = DONE
-    except (WrongInputError, OSError) as error:
-        status = _complain(str(error))
-    sys.exit(status if isinstance(status, int) else DONE)
+        return DONE
+    except OSError as error:
+        return _complain(told(error))
+    except WrongInputError as error:
+        return _complain(str(error))
+    if status == INTERRUPTED:  # click's, before a command began
+        _say("interrupted")
+    return status if isinstance(status, int) else DONE
 
 
 def _complain(problem: str) -> int:
-    typer.echo(message(f"Error: {problem}"), err=True)
+    _say(message(f"Error: {problem}"))
     return WRONG_INPUT
+
+
+def _say(line: str) -> None:
+    with suppress(OSError):  # there may be nobody any more
+        typer.echo(line, err=True)

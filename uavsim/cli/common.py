@@ -1,8 +1,11 @@
 """What the commands share: the application, its options, progress, the folder to write and how a run ends."""
 
+import os
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from itertools import count
 from math import isfinite
 from pathlib import Path
 from time import monotonic
@@ -10,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from uavsim.folders import SCRATCH, Place, TakenError, holds_flights
 from uavsim.views.text import message
 
 if TYPE_CHECKING:
@@ -38,6 +42,16 @@ def finite(number: float | None) -> float | None:
     return number
 
 
+class Interrupted(Exception):  # noqa: N818 (nothing is wrong)
+    """Somebody wants to end; what became of the work, if there is something to say."""
+
+
+def told(error: OSError) -> str:
+    """One line: what, and where."""
+    named = error.filename is not None and error.strerror is not None
+    return f"{error.filename}: {error.strerror}" if named else str(error)
+
+
 @contextmanager
 def user_input(where: str = "") -> Iterator[None]:
     """Count a ValueError of what reads or checks input as the user's; any other is a bug of ours and shows itself."""
@@ -47,16 +61,74 @@ def user_input(where: str = "") -> Iterator[None]:
         raise WrongInputError(f"{where}{error}") from error
 
 
-def folder(out: Path | None, name: str, *, overwrite: bool) -> Path:
-    """Folder to write: the one asked for, or a free one below `output/`."""
-    from uavsim.flight import claim
+@contextmanager
+def folder(out: Path | None, name: str, *, overwrite: bool, kind: type[Place] = Place) -> Iterator[Place]:
+    """Hold the folder to write to the end of the block: the one asked for, or a free one below `output/`."""
+    place = _free(name) if out is None else kind(out, overwrite=overwrite).claim()
+    try:
+        with place, _scratch_in(place.folder / SCRATCH), _matplotlib_in(place.folder / SCRATCH):
+            yield place
+    except KeyboardInterrupt:
+        raise Interrupted(_kept(place) or "nothing is written") from None
+    except OSError as error:
+        kept = _kept(place)
+        if not kept:
+            raise
+        raise OSError(f"{told(error)}; {kept}") from error
 
-    target, number = out or Path("output") / name, 1
-    while out is None and target.exists() and (not target.is_dir() or any(target.iterdir())):
-        number += 1
-        target = Path("output") / f"{name}-{number}"
-    claim(target, overwrite=overwrite)
-    return target
+
+def _kept(place: Place) -> str:
+    """Where finished flights are that could not take their place."""
+    return f"finished flights are in {place.folder}" if holds_flights(place.folder) else ""
+
+
+@contextmanager
+def _scratch_in(scratch: Path) -> Iterator[None]:
+    """Keep what is written in passing, such as an aircraft laid out for JSBSim, in a folder that vanishes with this one.
+
+    The processes that are started here do the same.
+    """
+    before = os.environ.get("TMPDIR"), tempfile.tempdir
+    scratch.mkdir(exist_ok=True)
+    os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
+    try:
+        yield
+    finally:
+        shared, tempfile.tempdir = before
+        if shared is None:
+            del os.environ["TMPDIR"]
+        else:
+            os.environ["TMPDIR"] = shared
+
+
+@contextmanager
+def _matplotlib_in(scratch: Path) -> Iterator[None]:
+    """Where matplotlib cannot write what it keeps for the next run, give it a folder that vanishes with this one."""
+    homes = {"XDG_CONFIG_HOME": "~/.config", "XDG_CACHE_HOME": "~/.cache"}
+    kept = (Path(os.environ.get(name) or os.path.expanduser(home)) / "matplotlib" for name, home in homes.items())
+    if "MPLCONFIGDIR" in os.environ or all(map(_may_write, kept)):
+        yield
+        return
+    os.environ["MPLCONFIGDIR"] = str(scratch)
+    try:
+        yield
+    finally:
+        del os.environ["MPLCONFIGDIR"]
+
+
+def _may_write(folder: Path) -> bool:
+    """Whether files can be made in a folder that may have to be made, too."""
+    there = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+
+
+def _free(name: str) -> Place:
+    """The first place of this name, or with a number, that nobody has."""
+    for number in count(1):
+        place = Place(Path("output") / (name if number == 1 else f"{name}-{number}"))
+        with suppress(TakenError):
+            return place.claim()
+    raise AssertionError
 
 
 def plotter(flight: "Flight") -> Callable[[Path], None]:
@@ -83,7 +155,8 @@ class Bar:
 
     def __exit__(self, *_: object) -> None:
         if self._progress is not None:
-            self._progress.stop()
+            with suppress(OSError):  # the terminal may have been closed
+                self._progress.stop()
 
     def show(self, share: float) -> None:
         """Show that `share`, 0 … 1, is done."""

@@ -1,30 +1,39 @@
 """`uavsim fly`: one flight, or a few with a table of all."""
 
 import re
+import shlex
 from collections.abc import Callable
-from pathlib import Path
+from contextlib import AbstractContextManager
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from uavsim.cli.common import (
-    INTERRUPTED,
     LARGEST_SEED,
     Bar,
+    Interrupted,
     NoPlots,
     Out,
     Overwrite,
+    WrongInputError,
     as_expected,
     folder,
     leave,
     plotter,
     user_input,
 )
+from uavsim.folders import Place
 
 if TYPE_CHECKING:
     from uavsim.cosim import Cosimulation
+    from uavsim.flight import Flight
     from uavsim.scenario import Scenario
     from uavsim.studies.batch import Batch
+    from uavsim.views.batch import Record
+
+Held = AbstractContextManager[Place]
+Ready = Callable[[], "Cosimulation"]
 
 MOST_FLIGHTS = 100_000
 
@@ -56,15 +65,14 @@ def fly(
         first = numbers[0] if numbers else seed
         loaded = load_scenario(scenario, overrides=settings or (), seed=first, seed_name="--seed")
 
-    def place() -> Path:
-        return folder(out, f"{loaded.name}-{named(numbers) or loaded.seed}", overwrite=overwrite)
-
-    place()  # before anything is flown in vain
-    simulation = _ready(loaded, settings or ())
+    name = f"{loaded.name}-{named(numbers) or loaded.seed}"
+    place = folder(out, name, overwrite=overwrite)
+    ready = partial(_ready, loaded, settings or ())
     if numbers:
-        _fly_many(loaded, numbers, place, plots=not no_plots, overwrite=overwrite)
+        given = [scenario, *(part for change in settings or () for part in ("--set", change))]
+        _fly_many(loaded, numbers, place, ready, plots=not no_plots, given=given)
     else:
-        _fly_one(simulation, place, plots=not no_plots, overwrite=overwrite)
+        _fly_one(place, ready, plots=not no_plots)
 
 
 def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation":
@@ -76,40 +84,77 @@ def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation"
         return Cosimulation(scenario)
 
 
-def _fly_one(simulation: "Cosimulation", place: Callable[[], Path], *, plots: bool, overwrite: bool) -> None:
-    from uavsim.cosim import CHUNK
+def _fly_one(place: Held, ready: Ready, *, plots: bool) -> None:
     from uavsim.views import terminal
 
-    with Bar(f"flying {simulation.scenario.name}, seed {simulation.scenario.seed}") as bar:
-        while not simulation.ended:
-            simulation.advance(CHUNK)
-            bar.show(simulation.plant.k / simulation.steps)
-    flight = simulation.finish()
-    written = flight.save(place(), overwrite=overwrite, extra=plotter(flight) if plots else None)
+    with place as held:  # before anything is flown in vain
+        flight = _flown(ready())
+        flight.write(held.folder, plotter(flight) if plots else None)
     terminal.print_score(flight)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {held.target}")
     leave(as_expected(flight.score))
 
 
+def _flown(simulation: "Cosimulation") -> "Flight":
+    from uavsim.cosim import CHUNK
+
+    plant, scenario = simulation.plant, simulation.scenario
+    try:
+        with Bar(f"flying {scenario.name}, seed {scenario.seed}") as bar:
+            while not simulation.ended:
+                simulation.advance(CHUNK)
+                bar.show(plant.k / simulation.steps)
+        return simulation.finish()
+    except KeyboardInterrupt:
+        flown = f"{plant.t:.1f} of {scenario.duration:g} s were flown"
+        raise Interrupted(f"{flown}; nothing is written") from None
+
+
 def _fly_many(
-    scenario: "Scenario", numbers: list[int], place: Callable[[], Path], *, plots: bool, overwrite: bool
+    scenario: "Scenario", numbers: list[int], place: Held, ready: Ready, *, plots: bool, given: list[str]
 ) -> None:
     from uavsim.studies.batch import fly_seeds
     from uavsim.views import batch as view
     from uavsim.views import terminal
 
-    with Bar(f"flying {scenario.name}") as bar:
-        flown = fly_seeds(scenario, numbers, progress=lambda done, all_: bar.show(done / all_))
-    if not len(flown.runs):
-        raise KeyboardInterrupt
-    written = place()
-    view.save(flown, written, overwrite=overwrite, plots=plots)
+    with place as held:
+        ready()  # only to see whether it can be flown
+        record = view.Record(held.folder, scenario, numbers)
+        with Bar(f"flying {scenario.name}") as bar:
+            flown = fly_seeds(scenario, numbers, progress=lambda n, all_: bar.show(n / all_), keep=record.keep)
+        left = _left(flown, given)
+        if not len(flown.runs):
+            raise KeyboardInterrupt if not flown.lost else WrongInputError(f"no flight is finished: {left}")
+        drawn = _closed(record, flown, plots=plots)
     terminal.print_batch(flown)
-    terminal.say(f"written to {written}")
-    if not flown.complete:
-        typer.echo(f"interrupted: {len(flown.runs)} of {len(numbers)} flights are kept", err=True)
-        raise typer.Exit(INTERRUPTED)
+    terminal.say(f"written to {held.target}")
+    if left:
+        typer.echo(f"unfinished: {left}", err=True)
+        leave(well=False)
+    if not (flown.complete and drawn):
+        remark = "" if drawn else "; not all plots are drawn"
+        raise Interrupted(f"{len(flown.runs)} of {len(numbers)} flights are kept{remark}")
     leave(_all_as_expected(flown))
+
+
+def _left(flown: "Batch", given: list[str]) -> str:
+    """Name the seeds whose process died, and the command that flies them; empty if there are none."""
+    from uavsim.views.batch import ranges
+
+    if not flown.lost:
+        return ""
+    seeds = ranges(flown.lost)
+    command = shlex.join(["uavsim", "fly", *given, "--seeds", seeds])
+    return f"seed {seeds}, whose process died twice; what is left is flown by: {command}"
+
+
+def _closed(record: "Record", flown: "Batch", *, plots: bool) -> bool:
+    """Complete the folder; False if somebody did not want to wait for it."""
+    try:
+        record.close(flown, plots=plots)
+    except KeyboardInterrupt:
+        return False
+    return True
 
 
 def _all_as_expected(flown: "Batch") -> bool:

@@ -1,7 +1,5 @@
 """`uavsim paper`: the paper's tables and figures beside ours."""
 
-from pathlib import Path
-
 from uavsim.cli.common import Bar, Out, Overwrite, folder, leave
 
 
@@ -17,13 +15,10 @@ def paper(out: Out = None, overwrite: Overwrite = False) -> None:
     from uavsim.views import paper as view
     from uavsim.views import terminal
 
-    def place() -> Path:
-        return folder(out, "paper", overwrite=overwrite)
-
-    place()  # before anything is computed in vain
-    with Bar("reproducing the paper") as bar:
-        found = reproduce(bar.show)
-    written = view.save(found, place(), overwrite=overwrite)
+    with folder(out, "paper", overwrite=overwrite) as place:  # before anything is computed in vain
+        with Bar("reproducing the paper") as bar:
+            found = reproduce(bar.show)
+        view.save(found, place.folder)
     view.print_entries(found)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {place.target}")
     leave(found.as_documented)

@@ -59,12 +59,11 @@ def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bo
         missing = [table for table in ("accelerometer", "air_data", "truth") if table not in recorded.tables]
         if missing:
             raise ValueError(f"{flight} cannot be replayed: {missing[0]}.parquet is missing")
-    folder(out, name, overwrite=overwrite)
-    again = replay_flight(recorded)
-    target = folder(out, name, overwrite=overwrite)
-    written = again.save(target, overwrite=overwrite, extra=plotter(again) if plots else None)
+    with folder(out, name, overwrite=overwrite) as place:  # before anything is replayed in vain
+        again = replay_flight(recorded)
+        again.write(place.folder, plotter(again) if plots else None)
     terminal.print_score(again)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {place.target}")
 
 
 def _replay_log(
@@ -82,16 +81,13 @@ def _replay_log(
         detector = load_scenario("catapult", overrides=settings).detector if settings else None
         recording = read_log(logs, mapping)
 
-    def place() -> Path:
-        return folder(out, f"{logs[0].stem}-replay", overwrite=overwrite)
-
     def draw(folder: Path) -> None:
         view.save_plot(replayed, folder / "plots")
 
-    place()
-    with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
-        replayed = replay_log(recording, detector)
-    written = replayed.save(place(), overwrite=overwrite, extra=draw if plots else None)
+    with folder(out, f"{logs[0].stem}-replay", overwrite=overwrite) as place:
+        with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
+            replayed = replay_log(recording, detector)
+        replayed.write(place.folder, draw if plots else None)
     for line in view.lines(replayed):
         terminal.say(line)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {place.target}")

@@ -1,7 +1,6 @@
 """`uavsim roc`: operating curves of launch detectors on the same signals."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -55,36 +54,32 @@ def roc(
     base, launches, name = _launches(scenario, sigma)
     settings = [replace(base, kind=kind) for kind in kinds]  # type: ignore[arg-type]
 
-    def place() -> Path:
-        return folder(out, f"roc-{seed}", overwrite=overwrite)
-
-    place()  # before anything is computed in vain
-    with Bar("trying launch detectors") as bar, user_input():
-        found = operating.operate(
-            settings,
-            launches,
-            hours=hours,
-            trials=trials,
-            seed=seed,
-            name=name,
-            workers=workers,
-            progress=lambda share: bar.show((SWEEP if cells else 1.0) * share),
-        )
-        table = None
-        if cells:
-            table = operating.compare(
-                _with_default(settings, base),
-                trials=cells,
+    with folder(out, f"roc-{seed}", overwrite=overwrite) as place:  # before anything is computed in vain
+        with Bar("trying launch detectors") as bar, user_input():
+            found = operating.operate(
+                settings,
+                launches,
+                hours=hours,
+                trials=trials,
                 seed=seed,
+                name=name,
                 workers=workers,
-                progress=lambda share: bar.show(SWEEP + (1.0 - SWEEP) * share),
+                progress=lambda share: bar.show((SWEEP if cells else 1.0) * share),
             )
-    written = place()
-    view.save(found, table, written, overwrite=overwrite, plots=not no_plots)
+            table = None
+            if cells:
+                table = operating.compare(
+                    _with_default(settings, base),
+                    trials=cells,
+                    seed=seed,
+                    workers=workers,
+                    progress=lambda share: bar.show(SWEEP + (1.0 - SWEEP) * share),
+                )
+        view.save(found, table, place.folder, plots=not no_plots)
     tables.print_operating(found)
     if table is not None:
         tables.print_cells(table, DetectorSettings().kind)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {place.target}")
 
 
 def kinds_of(text: str | None) -> list[str]:

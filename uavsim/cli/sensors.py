@@ -67,14 +67,10 @@ def sensors(
     with user_input("--compare: "):
         log = None if compare is None else read_log(compare, part, mapping)
 
-    def place() -> Path:
-        return folder(out, f"sensors-{part.name}", overwrite=overwrite)
-
-    place()
-    datasheets.print_preset(name)
-    with Bar(f"simulating {hours:g} h") as bar:
-        measured = put_on_bench(part, hours=hours, seed=seed, unit=which, log=log, progress=bar.show)
-    written = place()
-    save_bench(measured, written, overwrite=overwrite, plots=not no_plots)
+    with folder(out, f"sensors-{part.name}", overwrite=overwrite) as place:  # before anything is simulated in vain
+        datasheets.print_preset(name)
+        with Bar(f"simulating {hours:g} h") as bar:
+            measured = put_on_bench(part, hours=hours, seed=seed, unit=which, log=log, progress=bar.show)
+        save_bench(measured, place.folder, plots=not no_plots)
     datasheets.print_bench(measured)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {place.target}")

@@ -48,19 +48,17 @@ def survey(
         outline = read_outline(aircraft)
         source = choose_source(SOURCES[SOURCES.index(choose("--sections", sections, SOURCES))])
 
-    def place() -> Path:
-        return folder(out, f"survey-{re.sub(r'[^A-Za-z0-9_-]+', '-', outline.name)}", overwrite=overwrite)
-
-    place()
-    envelope = _envelope(aircraft, flights or [], seed)
-    with user_input("--flights: "):
-        check_envelope(envelope)
-    with Bar(f"surveying {outline.name}") as bar:
-        found = study(outline, envelope, source, progress=bar.show)
-    written = view.save(found, place(), overwrite=overwrite, plots=not no_plots)
+    name = f"survey-{re.sub(r'[^A-Za-z0-9_-]+', '-', outline.name)}"
+    with folder(out, name, overwrite=overwrite) as place:  # before anything is computed in vain
+        envelope = _envelope(aircraft, flights or [], seed)
+        with user_input("--flights: "):
+            check_envelope(envelope)
+        with Bar(f"surveying {outline.name}") as bar:
+            found = study(outline, envelope, source, progress=bar.show)
+        view.save(found, place.folder, plots=not no_plots)
     for line in view.lines(found):
         terminal.say(line)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {place.target}")
 
 
 def _envelope(aircraft: str, flights: list[Path], seed: int) -> "Envelope":

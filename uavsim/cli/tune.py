@@ -7,6 +7,8 @@ import typer
 
 from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, finite, folder, user_input
 from uavsim.cli.roc import load
+from uavsim.files import write_toml
+from uavsim.folders import FilePlace, Place
 
 
 def tune(
@@ -40,26 +42,25 @@ def tune(
     with user_input():
         tuning.hours_for(false_alarms)
 
-    def place() -> Path:
-        if out is not None and out.suffix == ".toml":
-            view.check(out, overwrite=overwrite)
-            return out
-        return folder(out, f"tune-{loaded.name}-{seed}", overwrite=overwrite)
-
-    place()  # before anything is computed in vain
-    with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
-        found = tuning.tune(
-            loaded,
-            kind,  # type: ignore[arg-type]
-            budget=false_alarms,
-            seed=seed,
-            trials=trials,
-            workers=workers,
-            progress=bar.show,
-        )
-    written = view.save(found, place(), overwrite=overwrite)
+    one = out is not None and out.suffix == ".toml"
+    place = folder(out, f"tune-{loaded.name}-{seed}", overwrite=overwrite, kind=FilePlace if one else Place)
+    with place as held:  # before anything is computed in vain
+        with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
+            found = tuning.tune(
+                loaded,
+                kind,  # type: ignore[arg-type]
+                budget=false_alarms,
+                seed=seed,
+                trials=trials,
+                workers=workers,
+                progress=bar.show,
+            )
+        if one:
+            write_toml(held.folder / held.target.name, found.scenario.to_dict())
+        else:
+            view.save(found, held.folder)
     view.print_tuned(found)
-    terminal.say(f"written to {written}")
+    terminal.say(f"written to {held.target}")
 
 
 def kind_of(name: str | None) -> str | None:

@@ -69,8 +69,7 @@ Array = NDArray[np.float64]
 class JsbsimSettings:
     """Everything that a JSBSim flight needs: `step_rate` in Hz, the seed of its turbulence, the drawn launch.
 
-    `accelerometer_position` is from the aircraft's EYEPOINT, body axes forward-right-down, m. `scratch` is the folder
-    in which an aircraft of one's own is laid out for JSBSim while it is read; None: the system's for temporary files.
+    `accelerometer_position` is from the aircraft's EYEPOINT, body axes forward-right-down, m.
     """
 
     aircraft: AircraftSettings
@@ -82,7 +81,6 @@ class JsbsimSettings:
     random_seed: int = 1
     step_rate: float = 1000.0
     accelerometer_position: Vector = (0.0, 0.0, 0.0)
-    scratch: Path | None = None
 
 
 class _Silence(FGLogger):
@@ -166,7 +164,7 @@ class JsbsimPlant:
     # -- setting up --------------------------------------------------------------------------------------------------
 
     def _load(self, aircraft: AircraftSettings) -> FGFDMExec:
-        fdm = load_airframe(find_airframe(aircraft.model), self.settings.scratch)
+        fdm = load_airframe(find_airframe(aircraft.model))
         fdm.set_dt(self.dt)
         for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
             fdm.set_property_value(f"simulation/integrator/{name}/rotational", 3.0)
@@ -460,15 +458,11 @@ class JsbsimPlant:
         return travel
 
 
-def load_airframe(airframe: Airframe, scratch: Path | None = None) -> FGFDMExec:
-    """Let JSBSim read an aircraft that was checked: one of one's own from a copy, whatever becomes of the original.
+def load_airframe(airframe: Airframe) -> FGFDMExec:
+    """Let JSBSim read an aircraft that was checked.
 
-    Parameters
-    ----------
-    airframe
-        The aircraft.
-    scratch
-        Folder in which the copy stands while it is read; None: the system's for temporary files.
+    One of one's own is read from a copy, whatever becomes of the original. The copy stands in the folder for temporary
+    files (`tempfile`) while it is read; the command line has that inside the folder that it writes.
 
     Raises
     ------
@@ -477,7 +471,7 @@ def load_airframe(airframe: Airframe, scratch: Path | None = None) -> FGFDMExec:
     """
     if is_packaged(airframe):
         return _opened(airframe, Path(airframe))
-    with TemporaryDirectory(prefix=".uavsim-", dir=scratch) as place:
+    with TemporaryDirectory(prefix=".uavsim-") as place:
         return _opened(airframe, airframe.write(Path(place)))
 
 

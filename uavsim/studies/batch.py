@@ -7,14 +7,10 @@ are kept only where somebody will want to look: the first, and those that did no
 
 import math
 import os
-import signal
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing import get_context
-from threading import current_thread, main_thread
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,9 +18,11 @@ from numpy.typing import NDArray
 
 from uavsim.cosim import draw, fly
 from uavsim.flight import Flight
+from uavsim.interrupts import Interrupts
 from uavsim.scenario import Scenario
 from uavsim.score import HIDDEN
 from uavsim.studies.airspeed_flights import Course, course
+from uavsim.studies.processes import each
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,8 +35,8 @@ Progress = Callable[[int, int], None]
 """Called with the number of finished flights and of all."""
 Result = tuple[dict[str, Any], "ErrorTrace", Flight | None]
 """Row, errors, and the flight itself if it is kept."""
-Finished = Callable[[int, Result], None]
-"""Called with a flight's position among the seeds and what it gave; again with the same changes nothing."""
+Finished = Callable[[list[tuple[int, Result]]], None]
+"""Called with flights' positions among the seeds and what they gave; nothing interrupts it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +74,11 @@ class Batch:
     kept
         Whole flights by seed.
     complete
-        False if it was interrupted.
+        False if it was interrupted, or a flight could not be flown.
     wall_time
         s.
+    lost
+        Seeds of flights that could not be flown: their process died twice.
     """
 
     scenario: Scenario
@@ -87,6 +87,7 @@ class Batch:
     kept: dict[int, Flight]
     complete: bool
     wall_time: float
+    lost: tuple[int, ...] = ()
 
     @property
     def error_time(self) -> NDArray[np.float64]:
@@ -96,7 +97,12 @@ class Batch:
 
 
 def fly_seeds(
-    scenario: Scenario, seeds: list[int], *, workers: int | None = None, progress: Progress | None = None
+    scenario: Scenario,
+    seeds: list[int],
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    keep: Finished | None = None,
 ) -> Batch:
     """Fly a scenario once a seed.
 
@@ -110,6 +116,8 @@ def fly_seeds(
         Processes that fly; None: one a processor.
     progress
         Called after each flight.
+    keep
+        Called with what is finished before it counts as finished: writes it down.
 
     Returns
     -------
@@ -121,20 +129,24 @@ def fly_seeds(
 
     started = time.monotonic()
     done: dict[int, Result] = {}
+    lost: list[int] = []
     complete = True
 
-    def finished(position: int, result: Result) -> None:
-        known = position in done
-        done[position] = result
-        if progress is not None and not known:
-            progress(len(done), len(seeds))
+    def finished(results: list[tuple[int, Result]]) -> None:
+        if keep is not None:
+            keep(results)
+        for position, result in results:
+            done[position] = result
+            if progress is not None:
+                progress(len(done), len(seeds))
 
     workers = workers or os.cpu_count() or 1
     try:
         if workers == 1 or len(seeds) <= 1:
             _in_turn(scenario, seeds, finished)
         else:
-            _together(scenario, seeds, finished, workers)
+            fly_one = partial(_one_of, scenario)
+            lost = each(fly_one, list(enumerate(seeds)), workers=min(workers, len(seeds)), done=finished)
     except KeyboardInterrupt:
         complete = False
     ordered = [done[position] for position in sorted(done)]
@@ -143,46 +155,23 @@ def fly_seeds(
         runs=pd.DataFrame([row for row, _, _ in ordered]),
         traces=[trace for _, trace, _ in ordered],
         kept={flight.score["seed"]: flight for _, _, flight in ordered if flight is not None},
-        complete=complete,
+        complete=complete and not lost,
         wall_time=time.monotonic() - started,
+        lost=tuple(seeds[position] for position in lost),
     )
 
 
 def _in_turn(scenario: Scenario, seeds: list[int], finished: Finished) -> None:
     for position, seed in enumerate(seeds):
-        finished(position, _one(scenario, seed, position=position))
+        result = _one(scenario, seed, position=position)
+        with Interrupts():
+            finished([(position, result)])
 
 
-def _together(scenario: Scenario, seeds: list[int], finished: Finished, workers: int) -> None:
-    """Fly in several processes. When interrupted, start no more, and wait for what is under way."""
-    with ProcessPoolExecutor(min(workers, len(seeds)), mp_context=get_context("spawn")) as pool:
-        with _interrupts_ignored():
-            waiting: dict[Future[Result], int] = {
-                pool.submit(_one, scenario, seed, position=position): position for position, seed in enumerate(seeds)
-            }
-        try:
-            for future in as_completed(waiting):
-                finished(waiting[future], future.result())
-        except BaseException as error:
-            pool.shutdown(wait=True, cancel_futures=True)
-            if isinstance(error, KeyboardInterrupt):
-                for future, position in waiting.items():
-                    if not future.cancelled():
-                        finished(position, future.result())
-            raise
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Let processes that are started here inherit that Ctrl-C is not theirs: they finish what they fly."""
-    if current_thread() is not main_thread():  # only the main thread may say so
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+def _one_of(scenario: Scenario, which: tuple[int, int]) -> Result:
+    """Fly a seed, given with its position."""
+    position, seed = which
+    return _one(scenario, seed, position=position)
 
 
 def _one(scenario: Scenario, seed: int, *, position: int) -> Result:

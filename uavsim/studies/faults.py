@@ -13,10 +13,9 @@ Shares have Clopper-Pearson intervals.
 
 import os
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
+from functools import partial
 from math import inf, nan
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from sensors import Streams
 from uavsim.cosim import STEP_RATE, Cosimulation
 from uavsim.scenario import load_scenario
 from uavsim.studies.intervals import share_interval
+from uavsim.studies.processes import each
 
 OFF = 2.0  # m/s, true error from which on a fault has to be seen
 WITHIN = 2.0  # s
@@ -216,12 +216,21 @@ def campaign(
     workers = min(workers or os.cpu_count() or 1, flights)
     if workers == 1:
         return [fly_case(CASES[name], seed, extra) for seed in seeds]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        waiting = [pool.submit(fly_case, CASES[name], seed, extra) for seed in seeds]
-        for done, _ in enumerate(as_completed(waiting), 1):
-            if progress is not None:
-                progress(done / flights)
-        return [future.result() for future in waiting]
+    flown: dict[int, FaultFlight] = {}
+
+    def done(results: list[tuple[int, FaultFlight]]) -> None:
+        flown.update(results)
+        if progress is not None:
+            progress(len(flown) / flights)
+
+    lost = each(partial(_fly_seed, name, extra), list(seeds), workers=workers, done=done)
+    if lost:
+        raise RuntimeError(f"the process of seed {seeds[lost[0]]} of {name} died twice")
+    return [flown[position] for position in range(flights)]
+
+
+def _fly_seed(name: str, extra: tuple[str, ...], seed: int) -> FaultFlight:
+    return fly_case(CASES[name], seed, extra)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sensors.characterise import Characterisation
 from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
-from uavsim.flight import claim, unfinished, write_json
+from uavsim.files import write_json
 from uavsim.studies.bench import Bench
 from uavsim.views.figure import (
     BLACK,
@@ -47,29 +47,20 @@ DEPTH, HEADROOM = 1e-5, 0.3  # a histogram reaches so far below its peak, and ab
 SIZES = {1: (9.5, 5.8), 3: (14.5, 5.4)}  # in, by number of channels
 
 
-def save_bench(bench: Bench, target: Path, *, overwrite: bool, plots: bool) -> None:
-    """Write a folder with the figures `allan.png`, `psd.png`, `histogram.png` and the numbers `bench.json`.
+def save_bench(bench: Bench, folder: Path, *, plots: bool) -> None:
+    """Write the numbers `bench.json` and the figures `allan.png`, `psd.png`, `histogram.png`.
 
     Parameters
     ----------
-    target
-        Made with its parents, whole or not at all; an empty folder counts as none.
-    overwrite
-        Replace what a folder that is not empty holds of these.
+    folder
+        One that is there, see `uavsim.folders`.
     plots
         Draw the figures.
-
-    Raises
-    ------
-    FileExistsError
-        If there is something already and `overwrite` is false.
     """
-    claim(target, overwrite=overwrite)
-    with unfinished(target) as folder:
-        write_json(folder / "bench.json", numbers(bench))
-        if plots:
-            for name, draw in FIGURES.items():
-                save(draw(bench), folder / f"{name}.png")
+    write_json(folder / "bench.json", numbers(bench))
+    if plots:
+        for name, draw in FIGURES.items():
+            save(draw(bench), folder / f"{name}.png")
 
 
 # -- figures ---------------------------------------------------------------------------------------------------------

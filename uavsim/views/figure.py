@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from uavsim.files import whole
 from uavsim.views.text import cut, visible
 
 if TYPE_CHECKING:
@@ -154,7 +155,8 @@ def save(figure: "Figure", path: Path) -> Path:
     """Write a figure as PNG, without a trace of when or by what, and with all text drawn as it is written."""
     for text in _texts(figure):
         text.set_text(_drawn(text))
-    figure.savefig(path, dpi=DPI, metadata={"Software": None})
+    with whole(path) as part:
+        figure.savefig(part, dpi=DPI, format="png", metadata={"Software": None})
     return path
 
 

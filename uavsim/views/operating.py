@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.flight import claim, unfinished, write_json
+from uavsim.files import whole, write_json
 from uavsim.studies.false_alarms import DISTURBANCES
 from uavsim.studies.operating import KINDS, Operating
 from uavsim.views.figure import (
@@ -53,25 +53,20 @@ DELAYS = (2, 5, 10, 20, 50, 100, 200, 500)  # ms
 COLUMNS = 4  # of small multiples
 
 
-def save(found: Operating, cells: "pd.DataFrame | None", target: Path, *, overwrite: bool, plots: bool) -> None:
-    """Write the folder: `roc.csv`, `roc.parquet`, `roc.json`, `cells.csv` of the comparison, and plots.
-
-    Raises
-    ------
-    FileExistsError
-        If there is something already and `overwrite` is false.
-    """
-    claim(target, overwrite=overwrite)
-    with unfinished(target) as folder:
-        found.rows.to_csv(folder / "roc.csv", index=False)
-        found.rows.to_parquet(folder / "roc.parquet", index=False)
-        write_json(folder / "roc.json", summary(found))
-        if cells is not None:
-            cells.to_csv(folder / "cells.csv", index=False)
-        if plots:
-            (folder / "plots").mkdir()
-            for name, draw in FIGURES.items():
-                save_figure(draw(found), folder / "plots" / f"{name}.png")
+def save(found: Operating, cells: "pd.DataFrame | None", folder: Path, *, plots: bool) -> None:
+    """Write `roc.csv`, `roc.parquet`, `roc.json`, `cells.csv` of the comparison, and plots, into a folder."""
+    with whole(folder / "roc.csv") as part:
+        found.rows.to_csv(part, index=False)
+    with whole(folder / "roc.parquet") as part:
+        found.rows.to_parquet(part, index=False)
+    write_json(folder / "roc.json", summary(found))
+    if cells is not None:
+        with whole(folder / "cells.csv") as part:
+            cells.to_csv(part, index=False)
+    if plots:
+        (folder / "plots").mkdir()
+        for name, draw in FIGURES.items():
+            save_figure(draw(found), folder / "plots" / f"{name}.png")
 
 
 def summary(found: Operating) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uavsim import airdata
-from uavsim.flight import claim, unfinished, write_json, write_toml
+from uavsim.files import whole, write_json, write_toml
 from uavsim.studies.survey import Survey, box, choose
 from uavsim.studies.survey.paper_case import curves
 from uavsim.studies.survey.ranking import EQUAL, Rank, pair_error
@@ -32,30 +32,25 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def save(found: Survey, target: Path, *, overwrite: bool, plots: bool) -> Path:
-    """Write the folder of a survey, whole or not at all.
+def save(found: Survey, folder: Path, *, plots: bool) -> None:
+    """Write a survey.
 
     Parameters
     ----------
     found
         The survey.
-    target
-        Made with its parents; an empty folder counts as none.
-    overwrite
-        Replace a folder that is not empty.
+    folder
+        One that is there, see `uavsim.folders`.
     plots
         Draw the map.
     """
-    claim(target, overwrite=overwrite)
-    with unfinished(target) as folder:
-        write_json(folder / "survey.json", summary(found))
-        _write_rows(folder / "survey.csv", [COLUMNS, *_rows(found)])
-        write_toml(folder / "position_error.toml", position_error(found))
-        _write_rows(folder / "position_error.csv", _table(found))
-        if plots:
-            save_map(found, folder / "map.png")
-            save_pressures(found, folder / "pressures.png")
-    return target
+    write_json(folder / "survey.json", summary(found))
+    _write_rows(folder / "survey.csv", [COLUMNS, *_rows(found)])
+    write_toml(folder / "position_error.toml", position_error(found))
+    _write_rows(folder / "position_error.csv", _table(found))
+    if plots:
+        save_map(found, folder / "map.png")
+        save_pressures(found, folder / "pressures.png")
 
 
 def summary(found: Survey) -> dict[str, Any]:
@@ -143,7 +138,7 @@ def _table(found: Survey) -> list[list[Any]]:
 
 
 def _write_rows(path: Path, rows: Any) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
 
 

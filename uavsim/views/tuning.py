@@ -5,7 +5,7 @@ from typing import Any
 
 import tomli_w
 
-from uavsim.flight import claim, unfinished, without_none, write_json, write_toml
+from uavsim.files import without_none, write_json, write_text, write_toml
 from uavsim.studies.operating import level_key
 from uavsim.studies.tuning import OTHERS, Score, Tuned, plain
 from uavsim.views.terminal import _console, _print, _table
@@ -25,39 +25,11 @@ def lines(found: Tuned) -> str:
     return tomli_w.dumps(without_none({"detector": plain(found.scenario.detector)}))
 
 
-def save(found: Tuned, target: Path, *, overwrite: bool) -> Path:
-    """Write the scenario with the detector into a file that ends in .toml, or into a folder with `tune.json`.
-
-    Raises
-    ------
-    FileExistsError
-        If there is something already and `overwrite` is false.
-    """
-    if target.suffix == ".toml":
-        check(target, overwrite=overwrite)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        write_toml(target, found.scenario.to_dict())
-        return target
-    claim(target, overwrite=overwrite)
-    with unfinished(target) as folder:
-        write_toml(folder / "scenario.toml", found.scenario.to_dict())
-        (folder / "detector.toml").write_text(lines(found), encoding="utf-8")
-        write_json(folder / "tune.json", summary(found))
-    return target
-
-
-def check(target: Path, *, overwrite: bool) -> None:
-    """Make sure that a file may be written.
-
-    Raises
-    ------
-    FileExistsError
-        If it exists and `overwrite` is false, or is a folder.
-    """
-    if target.is_dir():
-        raise FileExistsError(f"{target} is a folder, not a file")
-    if target.exists() and not overwrite:
-        raise FileExistsError(f"{target} exists; choose another file or give --overwrite")
+def save(found: Tuned, folder: Path) -> None:
+    """Write the scenario with the detector, the detector alone and `tune.json` into a folder that is there."""
+    write_toml(folder / "scenario.toml", found.scenario.to_dict())
+    write_text(folder / "detector.toml", lines(found))
+    write_json(folder / "tune.json", summary(found))
 
 
 def summary(found: Tuned) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from uavsim.flight import claim, unfinished, write_json
+from uavsim.files import write_json, write_text
 from uavsim.views import terminal
 from uavsim.views.figure import save as save_figure
 from uavsim.views.paper.figures import FIGURES
@@ -15,28 +15,12 @@ if TYPE_CHECKING:
 __all__ = ["print_entries", "save"]
 
 
-def save(found: "Reproduction", target: Path, *, overwrite: bool = False) -> Path:
-    """Write the folder, whole or not at all.
-
-    Parameters
-    ----------
-    target
-        Made with its parents; an empty folder counts as none.
-    overwrite
-        Into a folder that is not empty: replace what was written there before; other files stay.
-
-    Raises
-    ------
-    OSError
-        If there is something already and `overwrite` is false (FileExistsError), or it cannot be written.
-    """
-    claim(target, overwrite=overwrite)
-    with unfinished(target) as folder:
-        (folder / "figures").mkdir()
-        files = {name: save_figure(draw(found), folder / "figures" / f"{name}.png") for name, draw in FIGURES.items()}
-        write_json(folder / "results.json", {name: entry.to_dict() for name, entry in found.entries.items()})
-        (folder / "index.html").write_text(page(found.entries, files), encoding="utf-8")
-    return target
+def save(found: "Reproduction", folder: Path) -> None:
+    """Write results, figures and page into a folder that is there."""
+    (folder / "figures").mkdir()
+    files = {name: save_figure(draw(found), folder / "figures" / f"{name}.png") for name, draw in FIGURES.items()}
+    write_json(folder / "results.json", {name: entry.to_dict() for name, entry in found.entries.items()})
+    write_text(folder / "index.html", page(found.entries, files))
 
 
 def print_entries(found: "Reproduction") -> None:
