@@ -115,7 +115,13 @@ def wait_until(condition: Callable[[], object]) -> None:
 def kept(folder: Path) -> pd.DataFrame:
     """Rows of a folder of flights in which nothing is half-written: every file and every kept flight is read."""
     halves = {".lock", ".keeping", ".runs.parquet.part", ".campaign.json.part"}  # what a killed process may leave
-    assert {p.name for p in folder.iterdir()} - halves <= {"campaign.json", "runs.parquet", "flights", "plots"}
+    assert {p.name for p in folder.iterdir()} - halves <= {
+        "campaign.json",
+        "runs.parquet",
+        "flights",
+        "plots",
+        ".scratch",
+    }
     assert described(folder)["complete"] in (True, False)
     rows = pd.read_parquet(folder / "runs.parquet") if (folder / "runs.parquet").exists() else pd.DataFrame()
     flights = {p.name for p in (folder / "flights").iterdir()} if (folder / "flights").exists() else set()

@@ -1,6 +1,7 @@
 """What the commands share: the application, its options, progress, the folder to write and how a run ends."""
 
 import os
+import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -84,7 +85,7 @@ def _kept(place: Place) -> str:
 
 @contextmanager
 def _scratch_in(scratch: Path) -> Iterator[None]:
-    """Keep what is written in passing, such as an aircraft laid out for JSBSim, in a folder that vanishes with this one.
+    """Keep what is written in passing, such as an aircraft laid out for JSBSim, in a folder that vanishes.
 
     The processes that are started here do the same.
     """
@@ -94,6 +95,7 @@ def _scratch_in(scratch: Path) -> Iterator[None]:
     try:
         yield
     finally:
+        shutil.rmtree(scratch, ignore_errors=True)
         shared, tempfile.tempdir = before
         if shared is None:
             del os.environ["TMPDIR"]
