@@ -189,13 +189,17 @@ _PUSHED: Attributes = {  # JSBSim files what it does with a force under its name
     "frame": words("BODY LOCAL WIND INERTIAL"),
 }
 
+_INSTANCE = "{http://www.w3.org/2001/XMLSchema-instance}"
+_SCHEMA: Attributes = {f"{_INSTANCE}{name}": Text.ANY for name in ("noNamespaceSchemaLocation", "schemaLocation")}
+"""Where an editor finds JSBSim's schema; nobody opens it here."""
+
 # -- metrics, mass, contacts, forces ---------------------------------------------------------------------------------
 
 RULES |= {
     "fdm_config": Rule(
         {
-            **dict.fromkeys(("name", "version", "release", "xmlns:xsi"), Text.ANY),
-            **dict.fromkeys(("xsi:noNamespaceSchemaLocation", "xsi:schemaLocation"), Text.ANY),
+            **dict.fromkeys(("name", "version", "release"), Text.ANY),
+            **_SCHEMA,
         },
         _each(
             "fileheader metrics mass_balance ground_reactions external_reactions buoyant_forces propulsion system "
@@ -443,7 +447,7 @@ RULES |= {
         {
             **NAMED,
             "file": Text.FILE,
-            **dict.fromkeys(("xmlns:xsi", "xsi:noNamespaceSchemaLocation", "xsi:schemaLocation"), Text.ANY),
+            **_SCHEMA,
         },
         _each("channel property function") | PROSE,
     ),

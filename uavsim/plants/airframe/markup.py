@@ -1,10 +1,8 @@
 """XML read into a tree that knows its lines, by a parser that opens nothing and expands nothing (defusedxml)."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from xml.sax import SAXException, SAXParseException
-from xml.sax.handler import ContentHandler
 
 LARGEST = 1_000_000  # bytes of one file; JSBSim's largest aircraft has 110 kB
 DEEPEST = 40  # elements in each other; JSBSim's deepest aircraft has 14, and its own reader recurses
@@ -40,29 +38,23 @@ class Element:
         return next((child for child in self.children if child.tag == tag), None)
 
 
-class _Builder(ContentHandler):
+class _Builder:
+    """What the parser tells of a file, as elements."""
+
     def __init__(self) -> None:
-        super().__init__()
         self.root: Element | None = None
+        self.line: Callable[[], int] = lambda: 0
         self._open: list[Element] = []
         self._texts: list[list[str]] = []
         self._count = 0
-        self._locator: object = None
 
-    def setDocumentLocator(self, locator: object) -> None:  # noqa: N802 (the name that SAX calls)
-        self._locator = locator
-
-    @property
-    def _line(self) -> int:
-        return int(self._locator.getLineNumber() or 0)  # type: ignore[attr-defined]
-
-    def startElement(self, name: str, attrs: object) -> None:  # noqa: N802
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1
         if len(self._open) >= DEEPEST:
-            raise MarkupError(f"<{name[:40]}>: more than {DEEPEST} elements in each other", self._line)
+            raise MarkupError(f"<{tag[:40]}>: more than {DEEPEST} elements in each other", self.line())
         if self._count > MOST:
-            raise MarkupError(f"more than {MOST} elements", self._line)
-        element = Element(name, dict(attrs.items()), self._line)  # type: ignore[attr-defined]
+            raise MarkupError(f"more than {MOST} elements", self.line())
+        element = Element(tag, attributes, self.line())
         if self._open:
             self._open[-1].children.append(element)
         else:
@@ -70,11 +62,14 @@ class _Builder(ContentHandler):
         self._open.append(element)
         self._texts.append([])
 
-    def characters(self, content: str) -> None:
-        self._texts[-1].append(content)
+    def data(self, text: str) -> None:
+        self._texts[-1].append(text)
 
-    def endElement(self, name: str) -> None:  # noqa: N802
+    def end(self, _: str) -> None:
         self._open.pop().text = "".join(self._texts.pop()).strip()
+
+    def close(self) -> Element | None:
+        return self.root
 
 
 def parse(content: bytes) -> Element:
@@ -85,22 +80,25 @@ def parse(content: bytes) -> Element:
     ValueError
         One line: what is wrong, with its line where there is one.
     """
-    import defusedxml.sax
+    from xml.etree.ElementTree import ParseError
+
     from defusedxml import DefusedXmlException
+    from defusedxml.ElementTree import DefusedXMLParser
 
     if len(content) > LARGEST:
         raise ValueError(f"is larger than {LARGEST} bytes")
     _check_encoding(content)
     builder = _Builder()
+    parser = DefusedXMLParser(target=builder, forbid_dtd=True)
+    builder.line = lambda: int(parser.parser.CurrentLineNumber)
     try:
-        defusedxml.sax.parseString(content, builder, forbid_dtd=True)
-    except SAXParseException as error:
-        raise MarkupError(f"not well-formed XML: {error.getMessage()}", error.getLineNumber() or 0) from None
+        parser.feed(content)
+        parser.close()
+    except ParseError as error:
+        raise MarkupError(f"not well-formed XML: {error}", error.position[0]) from None
     except DefusedXmlException:
-        raise ValueError(
-            "declares a document type or entities: write what they stand for where they are used"
-        ) from None
-    except (SAXException, UnicodeError, LookupError) as error:
+        raise ValueError("declares a document type or entities: write in its place what each stands for") from None
+    except (UnicodeError, LookupError) as error:
         raise ValueError(f"cannot be read as XML: {error}") from None
     assert builder.root is not None  # well-formed
     return builder.root
