@@ -78,9 +78,9 @@ def written(draw: random.Random, tree: dict[str, Any]) -> str:
         return text
     lines = text.splitlines() or [""]
     at = draw.randrange(len(lines) + 1)
-    odd = draw.choice((
-        lines[at % len(lines)], "a" + ".a" * 20_000 + " = 1", "x = " + "[" * 500, "x = " + "9" * 5000, "[a" + ".b" * 300 + "]",
-        "y = 1e400", "\x00", "\ufeff", "x = 0x" + "f" * 400, "x = \"" + "z" * 30_000 + "\"", "=", "[[values]]", "[values]",
-        "\n".join(f"k{i} = {i}" for i in range(25_000)),
-    ))  # fmt: skip
-    return "\n".join([*lines[:at], odd, *lines[at:]])
+    odd = (
+        *(lines[at % len(lines)], "a" + ".a" * 20_000 + " = 1", "x = " + "[" * 500, "x = " + "9" * 5000, "y = 1e400"),
+        *("[a" + ".b" * 300 + "]", "\x00", "\ufeff", "x = 0x" + "f" * 400, f'x = "{"z" * 30_000}"', "=", "[[values]]"),
+        *("[values]", "\n".join(f"k{i} = {i}" for i in range(25_000))),
+    )
+    return "\n".join([*lines[:at], draw.choice(odd), *lines[at:]])
