@@ -14,6 +14,7 @@ import types
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
+from itertools import takewhile
 from math import isfinite
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -183,14 +184,19 @@ def _check_size(value: Any, path: Path) -> None:
     groups = isinstance(value, Mapping) or any(isinstance(item, Mapping) for item in value)
     most = MOST_GROUPS if groups else MOST_ENTRIES
     if len(value) > most:
-        raise SettingError(f"{_key(path)}: has {len(value)} entries; it must have {most} at most", _key(path))
+        raise SettingError(f"{_key(path)}: has {len(value)} entries; it must have {most} at most", _top(path))
     if len(path) > DEEPEST:
-        raise SettingError(f"{_key(path)}: is nested too deep", _key(path))
+        raise SettingError(f"{_top(path)}: is nested too deep", _top(path))
 
 
 def _key(path: Path) -> str:
     """Return a path as it is written, requirements[0].key."""
     return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)[1:]
+
+
+def _top(path: Path) -> str:
+    """Return the key that a path leads through, without what is in its list."""
+    return _key(tuple(takewhile(lambda part: not isinstance(part, int), path)))
 
 
 def _is_ordinary(value: float) -> bool:

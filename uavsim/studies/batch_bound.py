@@ -42,6 +42,8 @@ def least_error(flown: Batch) -> tuple[Array, Array] | None:
     if len(courses) < FEWEST or flight is None or flight.score["launch"]["detected_time"] is None:
         return None
     t, sd = bound(flight, together(courses))
+    if not np.isfinite(sd).all():
+        return None
     bins = np.floor((t - ERROR_START) / ERROR_STEP).astype(int)
     middles = ERROR_START + ERROR_STEP * (np.arange(bins[0], bins[-1] + 1) + 0.5)
     counts = np.maximum(np.bincount(bins - bins[0]), 1)

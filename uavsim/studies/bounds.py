@@ -12,6 +12,7 @@ The bound holds for the mean over flights, not for one of them. Where F differs 
 Q⁻¹ F] credits the estimator with that difference: the bound is then lower than any filter gets, never higher.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -188,12 +189,23 @@ class AirspeedBound:
             ]
         )
         initial[B, S] = initial[S, B] = -bias
-        self.information = Information(np.linalg.inv(initial))
+        self._initial = initial
         self.time = schedule.start
         self._pushed = self._scaled = 0.0  # mean force now, m/s², and what its changes add to b's variance, m²/s⁴
 
     def sd(self) -> Array:
-        """Return the least standard deviation of the airspeed at each time told, m/s; shape (r,)."""
+        """Return the least standard deviation of the airspeed at each time told, m/s; shape (r,).
+
+        NaN throughout where the settings are so far from each other that floats cannot solve the equations.
+        """
+        with np.errstate(all="ignore"), suppress(np.linalg.LinAlgError):
+            found = self._sd()
+            if np.isfinite(found).all():
+                return found
+        return np.full(self._schedule.told.size, np.nan)
+
+    def _sd(self) -> Array:
+        self.information = Information(np.linalg.inv(self._initial))
         total_age = 0.5 * self._noise.total_window + self._noise.total_lag
         static_age = 0.5 * self._noise.static_window + self._noise.static_lag
         last_total = last_static = -np.inf

@@ -90,6 +90,8 @@ def _bound(record: Record) -> tuple[Array, Array] | None:
     if not all((record.column("truth", name) > 0.0).all() for name in ("p_static", "temperature")):
         return None
     t, sd = bound(record.flight, together([course(record.flight)]))
+    if not np.isfinite(sd).all():
+        return None
     return t + record.scored("launch", "true_time"), sd
 
 
