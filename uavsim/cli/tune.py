@@ -30,14 +30,14 @@ def tune(
 
     Example: uavsim tune catapult --out tuned.toml && uavsim fly tuned.toml
     """
-    from uavsim.studies import tuning
+    from uavsim.studies import reach, tuning
     from uavsim.views import terminal
     from uavsim.views import tuning as view
 
     kind = kind_of(detector)
     loaded = load(scenario)
     with user_input():
-        tuning.hours_for(false_alarms)
+        hours = tuning.hours_for(false_alarms)
 
     def place() -> Path:
         if out is not None and out.suffix == ".toml":
@@ -46,6 +46,8 @@ def tune(
         return folder(out, f"tune-{loaded.name}-{seed}", overwrite=overwrite)
 
     place()  # before anything is computed in vain
+    if patience := reach.tuning_told(hours, loaded.accelerometer.description().rate):
+        terminal.say(patience)
     with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
         found = tuning.tune(
             loaded,
