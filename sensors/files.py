@@ -75,29 +75,35 @@ def look(path: Path) -> Held:
         raise ValueError("is a folder, not a file") from None
     except OSError as error:
         raise ValueError(f"cannot be opened: {error.strerror}") from None
-    with open(descriptor, "rb") as file:
-        found = os.fstat(descriptor)
-        if stat.S_ISDIR(found.st_mode):
-            raise ValueError("is a folder, not a file")
-        if not stat.S_ISREG(found.st_mode):
-            raise ValueError("is a pipe, a device or a socket: write what it gives to a file, and name that")
-        if not found.st_size:
-            raise ValueError("is empty")
-        if found.st_size > LARGEST:
-            raise ValueError(f"has {found.st_size / 1e9:.3g} GB; at most {LARGEST / 1e9:g} GB are read")
-        try:
-            head = file.read(HEAD)
-        except OSError as error:
-            raise ValueError(f"cannot be read: {error.strerror}") from None
+    try:
+        size = _size(os.fstat(descriptor))
+        head = os.read(descriptor, HEAD)
+    except OSError as error:
+        raise ValueError(f"cannot be read: {error.strerror}") from None
+    finally:
+        os.close(descriptor)
     unpack = _packing(head)
     if unpack is None:
-        return Held(path, None, head, found.st_size)
+        return Held(path, None, head, size)
     unpacked = _unpacked(path, unpack)
     if not unpacked:
         raise ValueError("is empty when unpacked")
     if _packing(unpacked[:HEAD]) is not None:
         raise ValueError("is packed twice: unpack it first")
     return Held(path, unpacked, unpacked[:HEAD], len(unpacked))
+
+
+def _size(found: os.stat_result) -> int:
+    """Size of a file that may be read, B."""
+    if stat.S_ISDIR(found.st_mode):
+        raise ValueError("is a folder, not a file")
+    if not stat.S_ISREG(found.st_mode):
+        raise ValueError("is a pipe, a device or a socket: write what it gives to a file, and name that")
+    if not found.st_size:
+        raise ValueError("is empty")
+    if found.st_size > LARGEST:
+        raise ValueError(f"has {found.st_size / 1e9:.3g} GB; at most {LARGEST / 1e9:g} GB are read")
+    return found.st_size
 
 
 def is_binary(head: bytes) -> bool:
@@ -122,7 +128,11 @@ def _bzip2(file: BinaryIO) -> bytes:
 
 
 def _xz(file: BinaryIO) -> bytes:
-    return lzma.LZMADecompressor(memlimit=DICTIONARY).decompress(file.read(), UNPACKED + 1)
+    packed = lzma.LZMADecompressor(memlimit=DICTIONARY)
+    content = packed.decompress(file.read(), UNPACKED + 1)
+    if len(content) <= UNPACKED and not packed.eof:
+        raise EOFError("it ends before its end")
+    return content
 
 
 def _zip(file: BinaryIO) -> bytes:

@@ -51,6 +51,7 @@ LETTERS = {
 }
 OVER = {"c": 100.0, "C": 100.0, "e": 100.0, "E": 100.0, "L": 1e7}
 LONG_LINE = 10_000  # B, of a text log
+CONTROL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 NAME = re.compile(r"[A-Za-z0-9_]{1,16}")
 _FMT = Struct("<BB4s16s64s").unpack
 
@@ -65,6 +66,8 @@ class _Format:
         Of its binary form with the beginning, B.
     layout : numpy.dtype
         The fields by their places.
+    texts : tuple of bool
+        Which fields are text.
     count : int
         How many messages there are.
     at : list of int
@@ -76,6 +79,7 @@ class _Format:
     columns: tuple[str, ...]
     size: int
     layout: "np.dtype[np.void]"
+    texts: tuple[bool, ...]
     count: int = 0
     at: list[int] = field(default_factory=list)
 
@@ -96,7 +100,8 @@ def _format(name: str, letters: str, columns: str, size: int | None = None) -> _
         return None
     layout = np.dtype([(str(i), LETTERS[letter]) for i, letter in enumerate(letters)])
     whole = layout.itemsize + BEGIN
-    return _Format(name, letters, fields, whole, layout) if size in (None, whole) else None
+    texts = tuple(LETTERS[letter].startswith("S") for letter in letters)
+    return _Format(name, letters, fields, whole, layout, texts) if size in (None, whole) else None
 
 
 def read_dataflash(held: Held, wanted: set[str]) -> Logged:
@@ -251,38 +256,39 @@ def _text(field: bytes) -> str:
 
 
 class _Text(_Log):
-    """A text log."""
+    """A text log; a line counts only if it ends, has no control characters, and numbers where its format says so."""
 
     def __init__(self, held: Held, wanted: set[str]) -> None:
         super().__init__()
         self._known: dict[str, _Format] = {}
         self._numbers: dict[str, _Format] = {}
-        self._rows: dict[str, list[list[str]]] = {name: [] for name in wanted}
+        self._rows: dict[str, list[list[float]]] = {name: [] for name in wanted}
         with held.open() as file:
             for line in iter(lambda: file.readline(LONG_LINE), b""):
-                self._take(line)
+                self._read(line)
 
     def logged(self) -> Logged:
         """Return what it holds."""
         return self.of({name: self._table(name, rows) for name, rows in self._rows.items() if rows})
 
-    def _take(self, line: bytes) -> None:
-        """Take in a line."""
-        name, *values = (value.strip() for value in line.decode("latin-1").split(","))
-        if name == "FMT" and len(values) >= 5:
-            taken = self._is_defined(values)
-        elif name or values:
-            taken = name in self._known and self._is_kept(self._known[name], values)
-        else:
+    def _read(self, line: bytes) -> None:
+        """Take in a line, or count it as lost."""
+        if not line.strip():
             return
-        if not taken and not line.endswith(b"\n") and len(line) < LONG_LINE:
+        if not line.endswith(b"\n") and len(line) < LONG_LINE:
             self.truncated = True
-        elif not taken:
+        elif CONTROL.search(line) or not self._is_taken([value.strip() for value in line.decode("latin-1").split(",")]):
             self.lost += len(line)
 
-    def _is_defined(self, values: list[str]) -> bool:
+    def _is_taken(self, values: list[str]) -> bool:
+        """Take in a line's values, if they are as a format says."""
+        if values[0] == "FMT" and len(values) >= 6:
+            return self._is_defined(*values[1:])
+        known = self._known.get(values[0])
+        return known is not None and self._is_kept(known, values[1:])
+
+    def _is_defined(self, number: str, _: str, name: str, letters: str, *columns: str) -> bool:
         """Take in the format of a message."""
-        number, _, name, letters, *columns = values
         found = _format(name, letters, ",".join(columns))
         if found is None:
             return name == "FMT"  # whose columns some logs do not tell in full
@@ -294,33 +300,28 @@ class _Text(_Log):
         return True
 
     def _is_kept(self, known: _Format, values: list[str]) -> bool:
-        """Keep a line's values if they are as many as its format says; a text at its end may hold commas."""
+        """Keep values if they are as many as their format says; a text at the end may hold commas."""
         more = len(values) - len(known.columns)
-        if more < 0 or (more and LETTERS[known.letters[-1]][0] != "S"):
+        if more < 0 or (more and not known.texts[-1]):
             return False
-        known.count += 1
-        if known.name == "FMTU":
+        if known.name in self._rows:
+            try:
+                row = [np.nan if text else float(value) for value, text in zip(values, known.texts, strict=False)]
+            except ValueError:
+                return False
+            self._rows[known.name].append(row)
+            check_rows(known.name, len(self._rows[known.name]))
+        elif known.name == "FMTU":
             fields = dict(zip(known.columns, values, strict=False))
             self.mark(self._numbers.get(fields.get("FmtType", "")), fields.get("UnitIds", ""))
-        if known.name in self._rows:
-            rows = self._rows[known.name]
-            rows.append(values[: len(known.columns)])
-            check_rows(known.name, len(rows))
+        known.count += 1
         return True
 
-    def _table(self, name: str, rows: list[list[str]]) -> dict[str, NDArray[np.generic]]:
+    def _table(self, name: str, rows: list[list[float]]) -> dict[str, NDArray[np.generic]]:
+        """Fields of a message; bytes are whole numbers, for one of them tells the instance."""
         of = self._known[name]
         table: dict[str, NDArray[np.generic]] = {}
-        for i, (column, letter) in enumerate(zip(of.columns, of.letters, strict=True)):
-            numbers = np.array([_number(row[i]) for row in rows])
-            small = LETTERS[letter] in ("i1", "u1")  # as the number of an instance
-            whole = small and bool(np.all(np.isfinite(numbers)) and np.all(np.abs(numbers) < 256))
-            table[column] = numbers.astype(np.int64) if whole else numbers
+        for column, letter, values in zip(of.columns, of.letters, np.array(rows).T, strict=True):
+            small = LETTERS[letter] in ("i1", "u1") and bool(np.all(np.abs(values) < 256.0))
+            table[column] = values.astype(np.int64) if small else values
         return table
-
-
-def _number(value: str) -> float:
-    try:
-        return float(value)
-    except ValueError:
-        return np.nan

@@ -156,4 +156,7 @@ def _reader(fields: Mapping[str, NDArray[np.generic]], columns: Mapping[str, str
 
 def _floats(values: NDArray[np.generic]) -> Array:
     """Return a field as numbers; NaN if it is text."""
-    return values.astype(np.float64) if values.dtype.kind in "biuf" else np.full(values.shape, np.nan)
+    if values.dtype.kind not in "biuf":
+        return np.full(values.shape, np.nan)
+    with np.errstate(invalid="ignore"):  # damage makes NaN that signal
+        return values.astype(np.float64)

@@ -46,7 +46,8 @@ APPENDED = 0x01  # the only flag that need be understood
 WINDOW = 2**20  # B that are searched at once for where reading goes on
 EFFORT, FAILED = 10, 100  # B that may be looked at for each of the log; what a place costs that reading cannot go on at
 DATA, DEFINES, SUBSCRIBES, FLAGS, SYNC = b"DFABS"
-LONGEST = {DEFINES: 2**14, SUBSCRIBES: 300}  # B
+LONGEST = {DEFINES: 2**14, SUBSCRIBES: 300}  # B; other kinds of PX4's messages have up to some hundreds
+LONGEST_OTHER = 2**14
 FORMAT = re.compile(rb"[\w/-]+:(?:[\w/-]+(?:\[\d{1,5}\])? [\w/-]+;)+")
 FIELD = re.compile(r"([\w/-]+)(?:\[(\d+)\])? ([\w/-]+);")
 SUBSCRIPTION = re.compile(rb"[\s\S]{3}[\w/-]+")
@@ -199,7 +200,7 @@ class _Scan:
         if kind == DATA:
             return end if self._is_data(at, size) else 0
         demand = BODIES.get(kind)
-        if demand is None or size > LONGEST.get(kind, size):
+        if demand is None or size > LONGEST.get(kind, LONGEST_OTHER):
             return 0
         return end if demand(self.content[at + 3 : end]) else 0
 
@@ -215,7 +216,9 @@ class _Scan:
         if at + 5 > stop:
             return True
         size, kind = _HEAD(self.content, at)
-        return at + 3 + size > stop and (self._is_data(at, size) if kind == DATA else kind in BODIES)
+        if at + 3 + size <= stop or size > LONGEST.get(kind, LONGEST_OTHER):
+            return False
+        return (self._is_data(at, size) if kind == DATA else kind in BODIES) and self._next(at + 1, stop) == stop
 
     def _next(self, at: int, stop: int) -> int:
         """Where reading goes on after damage, or the end."""
