@@ -35,14 +35,11 @@ class Held:
         None if it is read from the file.
     head : bytes
         The first `HEAD`, or fewer.
-    size : int
-        B.
     """
 
     path: Path
     unpacked: bytes | None
     head: bytes
-    size: int
 
     def open(self) -> BinaryIO:
         """Open it for reading, from its first byte."""
@@ -64,7 +61,7 @@ def look(path: Path) -> Held:
     Raises
     ------
     ValueError
-        One line: there is none, it is no regular file, cannot be opened, is empty or too large, or cannot be unpacked.
+        One line: there is none, it is no regular file, cannot be opened, is too large, or cannot be unpacked.
     """
     try:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
@@ -72,38 +69,38 @@ def look(path: Path) -> Held:
         leads = "is a link that leads nowhere" if path.is_symlink() else "there is no such file"
         raise ValueError(leads) from None
     except IsADirectoryError:
-        raise ValueError("is a folder, not a file") from None
+        raise ValueError("there is no such file, but a folder of that name") from None
     except OSError as error:
         raise ValueError(f"cannot be opened: {error.strerror}") from None
     try:
-        size = _size(os.fstat(descriptor))
+        found = os.fstat(descriptor)
+        _check(found)
         head = os.read(descriptor, HEAD)
+        if head and not found.st_size:
+            raise ValueError("is a file of the system, of no size: write what it gives to a file, and name that")
     except OSError as error:
         raise ValueError(f"cannot be read: {error.strerror}") from None
     finally:
         os.close(descriptor)
     unpack = _packing(head)
     if unpack is None:
-        return Held(path, None, head, size)
+        return Held(path, None, head)
     unpacked = _unpacked(path, unpack)
     if not unpacked:
         raise ValueError("is empty when unpacked")
     if _packing(unpacked[:HEAD]) is not None:
         raise ValueError("is packed twice: unpack it first")
-    return Held(path, unpacked, unpacked[:HEAD], len(unpacked))
+    return Held(path, unpacked, unpacked[:HEAD])
 
 
-def _size(found: os.stat_result) -> int:
-    """Size of a file that may be read, B."""
+def _check(found: os.stat_result) -> None:
+    """Refuse what is no regular file, or too large."""
     if stat.S_ISDIR(found.st_mode):
-        raise ValueError("is a folder, not a file")
+        raise ValueError("there is no such file, but a folder of that name")
     if not stat.S_ISREG(found.st_mode):
         raise ValueError("is a pipe, a device or a socket: write what it gives to a file, and name that")
-    if not found.st_size:
-        raise ValueError("is empty")
     if found.st_size > LARGEST:
         raise ValueError(f"has {found.st_size / 1e9:.3g} GB; at most {LARGEST / 1e9:g} GB are read")
-    return found.st_size
 
 
 def is_binary(head: bytes) -> bool:

@@ -128,6 +128,8 @@ def _csv_understood() -> Iterator[None]:
 def _first_line(held: Held) -> tuple[str, str]:
     """Return the encoding of a CSV file, and the line of names."""
     head = held.first(LONGEST_LINE)
+    if not head:
+        raise ValueError("not a table of comma-separated values (an empty file)")
     encoding = next((name for mark, name in MARKS.items() if head.startswith(mark)), "")
     if not encoding:
         if is_binary(head[:4096]):

@@ -336,7 +336,7 @@ def test_names_in_latin_1_can_be_mapped(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (b"", "is empty"),
+        (b"", "an empty file"),
         (bytes(4096), "a binary file"),
         (b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 20, "a binary file"),
         (b"t,fx,fy,fz", "column 't' holds no numbers"),
@@ -415,8 +415,10 @@ def test_only_regular_files_are_opened(tmp_path: Path) -> None:
     assert "is a link that leads nowhere" in refused(lambda: read_log([tmp_path / "leads.csv"]))
     (tmp_path / "loop.csv").symlink_to(tmp_path / "loop.csv")
     assert "cannot be opened: " in refused(lambda: read_log([tmp_path / "loop.csv"]))
-    assert "is a folder, not a file" in refused(lambda: read_log([tmp_path]))
+    assert "there is no such file, but a folder of that name" in refused(lambda: read_log([tmp_path]))
     assert "there is no such file" in refused(lambda: read_log([tmp_path / "none.csv"]))
+    if Path("/proc/self/status").exists():
+        assert "is a file of the system" in refused(lambda: read_log([Path("/proc/self/status")]))
     assert "cannot be opened: " in refused(lambda: read_log([tmp_path / ("a" * 300)]))
 
 
