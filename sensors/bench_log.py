@@ -1,4 +1,4 @@
-"""A bench log of somebody's own part: a CSV file with a time and readings, brought to SI and to equal spacing.
+"""A bench log of somebody's own part: a table with a time and readings, brought to SI and to equal spacing.
 
 The statistics of `sensors.characterise` need equally spaced readings, and real logs have gaps, jittering stamps and
 rows that are no numbers. Rows that are no numbers are dropped, what is missing is filled by straight lines as long as
@@ -9,23 +9,26 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    import pandas as pd
+from sensors.files import look
+from sensors.tables import brief, table_of
 
 Array = NDArray[np.float64]
 
-SEPARATORS = (",", ";", "\t")
 SPREAD = 64  # intervals in a stretch by which the rate is told: stamps may be rounded to much of an interval
 GAP = 1.5  # intervals beyond which readings are missing
 MOST_FILLED = 0.05  # share of readings that may be filled in; beyond, the longest stretch without a gap is taken
+MOST_MISSING = 1e11  # readings in a gap, as they are counted: ten million such gaps are a whole number of 64 bits
 FEWEST = 1000  # readings
 SLOWEST, FASTEST = 0.01, 20_000.0  # Hz: what an accelerometer or a barometer gives, with a margin
-NUMBER = re.compile(r"(.+?)\*\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)")
+NUMBER = re.compile(r"(.+?)\*\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)", re.DOTALL)
+LEAST_FACTOR, MOST_FACTOR = 1e-15, 1e15  # of a map: from femtoseconds to seconds, and back
+MOST_READ = 1e12  # SI, of a reading: what is beyond is none, and its square still is a number
+LATEST = 1e20  # s, of a time: what is beyond is none; nanoseconds since 1970 that count as seconds are below
+LONGEST_MAP = 10_000  # characters
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,13 +103,15 @@ def parse_map(text: str, known: Sequence[str]) -> dict[str, Source]:
     ValueError
         If it is not of that form, names a column of ours that is not `known`, or one twice.
     """
+    if len(text) > LONGEST_MAP:
+        raise ValueError(f"a map of {len(text)} characters; at most {LONGEST_MAP} are read")
     found: dict[str, Source] = {}
     for part in text.split(","):
         ours, sign, theirs = (piece.strip() for piece in part.partition("="))
         if not (ours and sign and theirs):
             raise ValueError(f"{part.strip()[:40]!r}: give it as ours=theirs,… as in t=time,{known[1]}=column*factor")
         if ours not in known:
-            raise ValueError(f"{ours!r} is no column of ours; they are {', '.join(known)}")
+            raise ValueError(f"{brief(ours)!r} is no column of ours; they are {', '.join(known)}")
         if ours in found:
             raise ValueError(f"{ours!r} is given twice")
         found[ours] = Source(theirs)
@@ -121,7 +126,7 @@ def read_bench_log(
     Parameters
     ----------
     path : Path
-        A CSV file with a line of names; separated by commas, semicolons or tabs, `#` begins a comment.
+        A CSV file with a line of names, separated by commas, semicolons or tabs, or a Parquet file.
     columns, optional : sequence of str
         What is needed, t first, and what is taken if it is there; SI.
     mapping : mapping, optional
@@ -130,38 +135,20 @@ def read_bench_log(
     Raises
     ------
     ValueError
-        One line that names the file: if it is no such table, lacks a column, is too short, or its time does not rise.
-    OSError
-        If it cannot be read.
+        One line that names the file: if it is no such table, lacks a column, is too short, its time does not rise, or
+        it cannot be read.
     """
     try:
-        frame = read_table(path)
-        wanted = _sources(list(map(str, frame.columns)), columns, optional, mapping or {})
+        table = table_of(look(path))
+        wanted = _sources(table.names, columns, optional, mapping or {})
         names = tuple(wanted)
-        values = np.column_stack([numbers(frame, source) for source in wanted.values()])
+        read = table.read({source.column for source in wanted.values()})
+        values = np.column_stack([numbers(read[source.column], source, name)[0] for name, source in wanted.items()])
         good = np.isfinite(values).all(axis=1)
         dropped, values = int(np.count_nonzero(~good)), values[good]
         return _evenly(path.name, names, values, dropped)
-    except (FileNotFoundError, IsADirectoryError) as error:
-        raise ValueError(f"{path}: there is no such file") from error
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
-
-
-def read_table(path: Path) -> "pd.DataFrame":
-    """Read a CSV file as it is; ValueError if it is no table."""
-    import pandas as pd  # late: it takes half a second
-
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
-        head = next((line for line in file if line.strip() and not line.startswith("#")), "")
-    separator = max(SEPARATORS, key=head.count)
-    try:
-        frame = pd.read_csv(
-            path, sep=separator, comment="#", skipinitialspace=True, encoding="utf-8-sig", low_memory=False
-        )
-    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        raise ValueError(f"not a table of comma-separated values ({str(error).strip()})") from error
-    return frame.rename(columns=lambda name: str(name).strip())
 
 
 def _sources(
@@ -175,14 +162,20 @@ def _sources(
             wanted[name] = source
         elif name in mapping or name in columns:
             lacking = [n for n in columns if n not in mapping and n not in found] or [name]
-            hint = f"has no column {source.column!r}" if name in mapping else f"lacks {', '.join(lacking)}"
+            hint = f"has no column {brief(source.column)!r}" if name in mapping else f"lacks {', '.join(lacking)}"
             ours = ",".join(f"{n}=…" for n in lacking)
             raise ValueError(f"{hint}; it has {listed(found)}; say which is which with --map {ours}")
     return wanted
 
 
 def resolved(source: Source, found: Sequence[str]) -> Source:
-    """Split a sign and a factor off a name that is not itself a column: `-Ay`, `ax*9.80665`, `-ax*9.80665`."""
+    """Split a sign and a factor off a name that is not itself a column: `-Ay`, `ax*9.80665`, `-ax*9.80665`.
+
+    Raises
+    ------
+    ValueError
+        If the factor is 0, or none that a unit can have.
+    """
     whole = source.column
     signed = [(whole, 1.0)] + (
         [(whole[1:].strip(), -1.0 if whole[0] == "-" else 1.0)] if whole[:1] in ("-", "+") else []
@@ -192,24 +185,52 @@ def resolved(source: Source, found: Sequence[str]) -> Source:
             return Source(name, sign * source.factor)
         match = NUMBER.fullmatch(name)
         if match is not None and match[1].strip() in found:
-            return Source(match[1].strip(), sign * source.factor * float(match[2]))
+            return Source(match[1].strip(), sign * source.factor * _factor(match[2]))
     return source
 
 
+def _factor(text: str) -> float:
+    factor = float(text)
+    if not LEAST_FACTOR <= abs(factor) <= MOST_FACTOR:
+        raise ValueError(
+            f"the map has a factor of {brief(text)}: give one from {LEAST_FACTOR:g} to {MOST_FACTOR:g}, with a sign if "
+            "need be"
+        )
+    return factor
+
+
 def listed(names: Sequence[str], most: int = 12) -> str:
-    """Name columns, not too many."""
+    """Name columns, not too many, and none at length."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more if names else "no columns"
+    return ", ".join(map(brief, names[:most])) + more if names else "no columns"
 
 
-def numbers(frame: "pd.DataFrame", source: Source) -> Array:
-    """Return a column in our unit, NaN where it holds something else than a number; ValueError if it holds none."""
-    import pandas as pd
+def numbers(values: Array, source: Source, name: str) -> tuple[Array, int]:
+    """Return readings in our unit, NaN where there is no number or one beyond what can be, and how many are beyond.
 
-    column = pd.to_numeric(frame[source.column], errors="coerce").to_numpy(dtype=float)
-    if not np.isfinite(column).any():
-        raise ValueError(f"column {source.column!r} holds no numbers")
-    return column * source.factor
+    Parameters
+    ----------
+    values
+        Of the file's column.
+    source
+        Which it is, and the factor to our unit.
+    name
+        Of our column; t has another bound than readings.
+
+    Raises
+    ------
+    ValueError
+        If there is none that can be.
+    """
+    most = LATEST if name == "t" else MOST_READ
+    finite = np.isfinite(values)
+    with np.errstate(over="ignore", invalid="ignore"):
+        brought = values * source.factor
+        good = finite & (np.abs(brought) <= most)
+    if not good.any():
+        what = f"no number up to ±{most:g} in our unit" if finite.any() else "no numbers"
+        raise ValueError(f"column {brief(source.column)!r} holds {what}")
+    return np.where(good, brought, np.nan), int(np.count_nonzero(finite & ~good))
 
 
 def _evenly(name: str, columns: tuple[str, ...], values: Array, dropped: int) -> BenchLog:
@@ -221,15 +242,16 @@ def _evenly(name: str, columns: tuple[str, ...], values: Array, dropped: int) ->
         before, after = values[at, 0], values[at + 1, 0]
         raise ValueError(f"t does not rise: {after:.10g} s comes after {before:.10g} s (row {at + 2} of numbers)")
     usual = _interval(values[:, 0])
-    if not SLOWEST <= 1.0 / usual <= FASTEST:
+    if not 1.0 / FASTEST <= usual <= 1.0 / SLOWEST:
+        a_second = f"{1.0 / usual:.3g}" if usual > 0.0 else "no end of"
         raise ValueError(
-            f"{1.0 / usual:.3g} readings a second; from {SLOWEST:g} to {FASTEST:g} are understood: is t in seconds?"
+            f"{a_second} readings a second; from {SLOWEST:g} to {FASTEST:g} are understood: is t in seconds?"
         )
     uneven = float(np.subtract(*np.percentile(interval, (90.0, 10.0))))
     gap = interval > GAP * usual + uneven
     regular = interval[~gap]
     usual = float(regular.mean())
-    missing = np.where(gap, np.maximum(np.round(interval / usual) - 1.0, 0.0), 0.0).astype(int)
+    missing = np.where(gap, np.clip(np.round(interval / usual) - 1.0, 0.0, MOST_MISSING), 0.0).astype(int)
     lost = int(missing.sum())
     filled = lost <= MOST_FILLED * len(values)
     even = _filled(values, missing) if filled else _longest(values, gap)

@@ -183,16 +183,17 @@ def _is_event(value: Any) -> bool:
 
 
 def _read_table(name: str, file: Path) -> "pd.DataFrame":
-    import pandas as pd
+    from sensors.files import look
+    from sensors.tables import ParquetTable
 
     try:
-        table = pd.read_parquet(file)
-    except (ValueError, OSError) as error:  # pyarrow's own errors are both
+        table = ParquetTable(look(file))
+        missing = [column for column in UNITS[name] if column not in table.names]
+        if not missing:
+            return table.frame([column for column in table.names if column in UNITS[name]], texts=("phase",))
+    except ValueError as error:
         raise ValueError(f"{file} cannot be read: {error}") from None
-    missing = [column for column in UNITS[name] if column not in table]
-    if missing:
-        raise ValueError(f"{file} is not a flight's: the column {missing[0]!r} is missing")
-    return table
+    raise ValueError(f"{file} is not a flight's: the column {missing[0]!r} is missing")
 
 
 def frame(name: str, columns: "Mapping[str, np.ndarray]") -> "pd.DataFrame":

@@ -1,5 +1,6 @@
 """`uavsim replay`: the onboard code over a flight's readings or somebody's log."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -50,7 +51,7 @@ def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bo
     from uavsim.scenario import Scenario
     from uavsim.views import terminal
 
-    name = f"{flight.resolve().name}-replay"
+    name = f"{Path(os.path.realpath(flight)).name}-replay"  # of what a link leads to, unless it leads in circles
     with user_input():
         if (flight / "campaign.json").is_file():
             raise ValueError(f"{flight} holds several flights: give one of the folders in {flight / 'flights'}")

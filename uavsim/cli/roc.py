@@ -45,7 +45,7 @@ def roc(
     Example: uavsim roc --scenario catapult --trials 200
     """
     from uavsim.onboard.launch import DetectorSettings
-    from uavsim.studies import operating
+    from uavsim.studies import operating, reach
     from uavsim.views import operating as view
     from uavsim.views import operating_tables as tables
     from uavsim.views import terminal
@@ -54,13 +54,23 @@ def roc(
     base, launches, name = _launches(scenario, sigma)
     settings = [replace(base, kind=kind) for kind in kinds]  # type: ignore[arg-type]
 
+    compared = _with_default(settings, base)
+    asked = reach.Work(hours, trials, cells)
+    work = reach.within_reach(
+        asked,
+        detectors=sum(1 for one in settings for _ in operating.levels(one)),
+        compared=len(compared) * len(operating.CELLS),
+        rate=launches.rate,
+    )
     with folder(out, f"roc-{seed}", overwrite=overwrite) as place:  # before anything is computed in vain
+        if left_out := reach.told(asked, work):
+            terminal.say(left_out)
         with Bar("trying launch detectors") as bar, user_input():
             found = operating.operate(
                 settings,
                 launches,
-                hours=hours,
-                trials=trials,
+                hours=work.hours,
+                trials=work.trials,
                 seed=seed,
                 name=name,
                 workers=workers,
@@ -69,8 +79,8 @@ def roc(
             table = None
             if cells:
                 table = operating.compare(
-                    _with_default(settings, base),
-                    trials=cells,
+                    compared,
+                    trials=work.cells,
                     seed=seed,
                     workers=workers,
                     progress=lambda share: bar.show(SWEEP + (1.0 - SWEEP) * share),

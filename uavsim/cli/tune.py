@@ -33,18 +33,20 @@ def tune(
 
     Example: uavsim tune catapult --out tuned.toml && uavsim fly tuned.toml
     """
-    from uavsim.studies import tuning
+    from uavsim.studies import reach, tuning
     from uavsim.views import terminal
     from uavsim.views import tuning as view
 
     kind = kind_of(detector)
     loaded = load(scenario)
     with user_input():
-        tuning.hours_for(false_alarms)
+        hours = tuning.hours_for(false_alarms)
 
     one = out is not None and out.suffix == ".toml"
     place = folder(out, f"tune-{loaded.name}-{seed}", overwrite=overwrite, kind=FilePlace if one else Place)
     with place as held:  # before anything is computed in vain
+        if patience := reach.tuning_told(hours, loaded.accelerometer.description().rate):
+            terminal.say(patience)
         with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
             found = tuning.tune(
                 loaded,

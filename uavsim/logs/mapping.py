@@ -4,16 +4,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sensors.bench_log import Source, listed, numbers, parse_map, resolved
+from sensors.bench_log import LATEST, MOST_READ, Source, listed, numbers, parse_map, resolved
+from sensors.tables import MOST_ROWS, brief
 from uavsim.logs.formats import Mapped, Table, named, read_tables
 from uavsim.logs.recording import AXES, COLUMNS, GAP, Array, Recording
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SLOWEST, FASTEST = 10.0, 20_000.0  # Hz, median rates that are understood
 FEWEST = 10  # readings
@@ -41,7 +38,7 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
     Parameters
     ----------
     paths
-        CSV, Parquet, ULog (needs pyulog) or DataFlash (needs pymavlink); told apart by what they hold.
+        CSV, Parquet, ULog or DataFlash, told apart by what they hold; also packed by gzip, bzip2, xz or zip.
     mapping
         ``ours=theirs,…``, as in ``t=time,fx=-Ay,fy=ax*9.80665,fz=imu[0].z``; of ULog and DataFlash theirs is
         ``message.field`` or ``message[instance].field``. Without, columns are t, fx, fy, fz; ULog and DataFlash have
@@ -67,12 +64,15 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
     with named(", ".join(map(str, paths))):
         missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
         if missing:
-            raise ValueError(_lacks(missing, [str(name) for table in tables for name in table.frame.columns]))
+            raise ValueError(_lacks(missing, [name for table in tables for name in table.columns]))
         factors = {axis: factor for piece in pieces for axis, factor in piece.factors.items()}
         _check_factors(factors)
         readings = _merged(pieces)
+        if len(readings) > MOST_ROWS:
+            raise ValueError(f"{len(readings)} rows; at most {MOST_ROWS} are replayed")
         recording = Recording(names, mapping or "", readings, (*remarks, *_remarks(readings)))
         _check_rate(recording)
+        _check_numbers(readings[:, 1:])
         if not any(factors.values()):  # else somebody has thought of units
             _check_unit(readings[:, 1:])
     return recording
@@ -80,7 +80,7 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
 
 def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) -> Piece | None:
     """Take ours out of a table; None if it has none of the axes, or no time."""
-    found = list(map(str, table.frame.columns))
+    found = table.columns
     wanted = {name: resolved(sources.get(name, table.usual.get(name, Source(name))), found) for name in COLUMNS}
     held = {name: source for name, source in wanted.items() if source.column in found}
     missing = [name for name in COLUMNS if name not in held]
@@ -91,7 +91,7 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
         raise ValueError(_lacks(missing, found, named))
     if "t" in missing or len(held) == 1:
         return None
-    values = {name: _values(table.frame, source) for name, source in held.items()}
+    values = _values(table, held, remarks)
     t = values.pop("t")
     timed = np.isfinite(t)
     back = np.flatnonzero(np.diff(t[timed]) < 0.0)
@@ -115,19 +115,20 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
     return Piece(table.name, t[keep], force, factors)
 
 
-def _values(table: "pd.DataFrame", source: Source) -> Array:
-    """Return a column as floats; dates are seconds since 1970."""
-    if table[source.column].dtype.kind == "M":
-        stamps = table[source.column].to_numpy(dtype="datetime64[ns]")
-        seconds = stamps.astype("int64") * 1e-9
-        return np.where(np.isnat(stamps), np.nan, seconds) * source.factor
-    values = np.array(numbers(table, source), dtype=float)
-    values[~np.isfinite(values)] = np.nan
+def _values(table: Table, held: Mapped, remarks: list[str]) -> dict[str, Array]:
+    """Return ours as numbers, and tell what is beyond all readings."""
+    read = table.read({source.column for source in held.values()})
+    values = {}
+    for name, source in held.items():
+        values[name], beyond = numbers(read[source.column], source, name)
+        if beyond:
+            most, what = (LATEST, "time") if name == "t" else (MOST_READ, "reading")
+            remarks.append(f"{table.name}: {beyond} numbers of {name} are beyond ±{most:g} and count as no {what}")
     return values
 
 
 def _lacks(missing: Sequence[str], found: Sequence[str], named: Sequence[str] = ()) -> str:
-    what = f"has no column {', '.join(map(repr, named))}" if named else f"lacks {', '.join(missing)}"
+    what = f"has no column {', '.join(repr(brief(name)) for name in named)}" if named else f"lacks {', '.join(missing)}"
     return f"{what}; it has {listed(found)}; say which is which with --map {','.join(f'{n}=…' for n in missing)}"
 
 
@@ -197,11 +198,16 @@ def _check_rate(recording: Recording) -> None:
         )
 
 
+def _check_numbers(force: Array) -> None:
+    """Refuse readings of which none has all axes."""
+    if not np.isfinite(force).all(axis=1).any():
+        raise ValueError(f"no row holds numbers for all of {', '.join(AXES)}: map columns that do")
+
+
 def _check_unit(force: Array) -> None:
     """Refuse what looks like another unit than m/s²."""
+    _check_numbers(force)
     sizes = np.linalg.norm(force, axis=1)
-    if not np.isfinite(sizes).any():
-        raise ValueError(f"no row holds numbers for all of {', '.join(AXES)}: map columns that do")
     middle = float(np.nanmedian(sizes))
     if LOOKS_LIKE_G[0] <= middle <= LOOKS_LIKE_G[1]:
         raise ValueError(

@@ -69,7 +69,8 @@ class Recording:
     @property
     def rate(self) -> float:
         """Median rate, Hz."""
-        return float(1.0 / np.median(np.diff(self.readings[:, 0])))
+        interval = float(np.median(np.diff(self.readings[:, 0])))
+        return 1.0 / interval if interval > 0.0 else np.inf
 
     @property
     def span(self) -> tuple[float, float]:

@@ -1,6 +1,7 @@
 """The launch detector run over a recording, from its first reading to its last."""
 
 from array import array
+from collections.abc import Iterator
 from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
@@ -13,6 +14,7 @@ from uavsim.flight import Flight, frame
 from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
 
+LOT = 50_000  # readings that are plain numbers at once
 PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
 
 _AIRSPEED = (
@@ -71,7 +73,7 @@ def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], lis
     detections: list[float] = []
     resume = np.inf
     step = detector.step
-    for t, fx, fy, fz in readings.tolist():
+    for t, fx, fy, fz in _rows(readings):
         if t >= resume:
             detector.reset()
             resume = np.inf
@@ -87,6 +89,12 @@ def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], lis
     whole = {name: np.array(values) for name, values in (("level", level), ("count", count), ("total", total))}
     flags = {name: np.array(v, dtype=bool) for name, v in (("triggered", triggered), ("recognised", recognised))}
     return {**whole, **flags}, detections
+
+
+def _rows(readings: Array) -> Iterator[list[float]]:
+    """Rows as plain numbers; not all at once, for these take six times the memory of an array."""
+    for first in range(0, len(readings), LOT):
+        yield from readings[first : first + LOT].tolist()
 
 
 def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str, Any]:

@@ -164,9 +164,10 @@ def _row(force: Forces, name: str) -> Forces:
 def kernel(name: str) -> Callable[..., int]:
     """Return the compiled loop of a name; numba is loaded here."""
     from uavsim.studies import kernels, kernels_field
+    from uavsim.studies.compiled import JIT, on_plain_numbers
 
     found: Callable[..., int] = getattr(kernels, name, None) or getattr(kernels_field, name)
-    return found
+    return found if JIT else on_plain_numbers(found)
 
 
 # -- numbers of each detector as it was built ------------------------------------------------------------------------

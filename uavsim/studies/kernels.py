@@ -19,32 +19,16 @@ y[0] is the k of the first sample since the detector began. To add a detector: a
 `uavsim.studies.detections`.
 """
 
-from collections.abc import Callable
-from typing import Any, TypeVar, cast
-
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-F = TypeVar("F", bound=Callable[..., Any])
+from uavsim.studies.compiled import compiled, wide
+
 Forces = NDArray[np.float64] | NDArray[np.float32]
 Numbers = tuple[float, ...]
 Counts = tuple[int, ...]
 Reals = NDArray[np.float64]
 Wholes = NDArray[np.int64]
-
-
-def compiled(function: F) -> F:
-    """Compile at the first call, and keep the machine code beside the module or in the user's cache if either can be.
-
-    Division by zero is not looked for: the only divisors are the rate and times above 0.
-    """
-    options: Any = {"nogil": True, "error_model": "numpy"}
-    try:
-        made = njit(cache=True, **options)(function)
-    except (RuntimeError, OSError):  # nowhere to write: compiled anew in every process
-        made = njit(**options)(function)
-    return cast(F, made)
 
 
 @compiled
@@ -53,7 +37,7 @@ def hold(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wh
     trigger, threshold, window, period = p
     held, holding, alarms = x[0], y[1] != 0, 0
     for i in range(f.size):
-        v = np.float64(f[i])
+        v = wide(f[i])
         if not holding:
             if not v > trigger:
                 continue
@@ -83,7 +67,7 @@ def nested(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: 
     samples, levels, needed, of, rearm = q
     opened, level, count, total, alarms = y[1], y[2], y[3], y[4], 0
     for i in range(f.size):
-        v = np.float64(f[i])
+        v = wide(f[i])
         if opened != 1:
             if opened == 2 or not v > trigger:
                 continue
@@ -116,7 +100,7 @@ def nested_axes(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals
     for i in range(f.shape[1]):
         recognised = False
         for axis in range(axes):
-            v = np.float64(f[axis, i])
+            v = wide(f[axis, i])
             at = 1 + 4 * axis
             if y[at] != 1:
                 if y[at] == 2 or not v > trigger:
@@ -150,7 +134,7 @@ def sliding(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y:
     count, place, alarms = y[1], y[2], 0
     ring = y[3:]
     for i in range(f.size):
-        above = 1 if np.float64(f[i]) > threshold else 0
+        above = 1 if wide(f[i]) > threshold else 0
         if count + above == 0:
             continue
         count += above - ring[place]
@@ -176,7 +160,7 @@ def sequence(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y
     samples, least, needed = q
     row, count, total, alarms = y[1], y[2], y[3], 0
     for i in range(f.size):
-        v = np.float64(f[i])
+        v = wide(f[i])
         if total == 0:
             if not v > trigger:
                 row = 0
@@ -207,7 +191,7 @@ def cusum(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: W
     reference, rise, fall, limit, period = p
     total, first, alarms = x[0], y[0], 0
     for i in range(f.size):
-        excess: float = np.float64(f[i]) - reference
+        excess: float = wide(f[i]) - reference
         if total == 0.0 and not excess > 0.0:
             continue
         if excess > rise:
@@ -235,7 +219,7 @@ def adaptive_cusum(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Re
     total, rough, mean = x[0], x[1], x[2]
     first, alarms, then = y[0], 0, (k0 - 1) / rate
     for i in range(f.size):
-        v, t = np.float64(f[i]), (k0 + i) / rate
+        v, t = wide(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
         away, weight, size = v - mean, dt * follow, most
@@ -278,7 +262,7 @@ def glr(f: Forces, k0: int, rate: float, p: Numbers, q: Wholes, x: Reals, y: Who
     place, quiet, alarms = y[1], y[2], 0
     sums, ring = y[3 : 3 + windows], y[3 + windows :]
     for i in range(f.size):
-        above = np.float64(f[i]) - reference + fall
+        above = wide(f[i]) - reference + fall
         added = 0
         if not above > 0.0:  # NaN too
             if quiet >= longest:

@@ -8,7 +8,8 @@ from math import isfinite, sqrt
 
 import numpy as np
 
-from uavsim.studies.kernels import Counts, Forces, Numbers, Reals, Wholes, compiled
+from uavsim.studies.compiled import compiled, wide
+from uavsim.studies.kernels import Counts, Forces, Numbers, Reals, Wholes
 
 
 @compiled
@@ -31,7 +32,7 @@ def px4(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Who
     before, last, summed, time, elapsed, held = x[0], x[1], x[2], x[3], x[4], x[5]
     first, alarms, then = y[0], 0, (k0 - 1) / rate
     for i in range(f.size):
-        v, t = np.float64(f[i]), (k0 + i) / rate
+        v, t = wide(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
         before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
@@ -63,7 +64,7 @@ def px4_norm(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y
         t = (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
-        fx, fy, fz = np.float64(f[0, i]), np.float64(f[1, i]), np.float64(f[2, i])
+        fx, fy, fz = wide(f[0, i]), wide(f[1, i]), wide(f[2, i])
         if isfinite(fx + fy + fz):
             time += dt
             sx, sy, sz = sx + fx * dt, sy + fy * dt, sz + fz * dt
@@ -101,7 +102,7 @@ def ardupilot(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, 
     v0, v1, v2, v3, v4 = x[6], x[7], x[8], x[9], x[10]
     first, waiting, alarms, then = y[0], y[1] != 0, 0, (k0 - 1) / rate
     for i in range(f.size):
-        v, t = np.float64(f[i]), (k0 + i) / rate
+        v, t = wide(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
         before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
@@ -137,7 +138,7 @@ def inav(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wh
     held, z1, z2 = x[0], x[1], x[2]
     first, started, alarms = y[0], y[1] != 0, 0
     for i in range(f.size):
-        v = np.float64(f[i])
+        v = wide(f[i])
         level = v
         if not isfinite(v):
             held = 0.0
@@ -177,7 +178,7 @@ def paparazzi(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, 
         if elapsed < interval:
             continue
         elapsed = 0.0
-        row = row + 1 if np.float64(f[i]) >= threshold else 0
+        row = row + 1 if wide(f[i]) >= threshold else 0
         if row >= calls:
             row, first = 0, k0 + i + 1
             out[alarms] = k0 + i
@@ -195,7 +196,7 @@ def altos(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: W
     before, last, summed, time, gained = x[0], x[1], x[2], x[3], x[4]
     first, alarms, then = y[0], 0, (k0 - 1) / rate
     for i in range(f.size):
-        v, t = np.float64(f[i]), (k0 + i) / rate
+        v, t = wide(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
         before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)

@@ -34,6 +34,7 @@ from uavsim.studies.workers import Progress
 from uavsim.truth import STANDARD_GRAVITY as G0
 
 MOST_HOURS = 1000.0  # h of the mix that are run for a budget
+MOST_HOURS_PLAIN = 100.0  # h, where numba's JIT is off: an hour and a half on one core
 FEW = 7.225  # upper 95 % bound of the mean of a Poisson count of 2: so many alarms the budget's hours leave room for
 NONE = 3.689  # the same of a count of 0
 MARGIN = 0.55  # of the budget, kept while tuning: none in the hours in which the budget leaves room for two
@@ -161,15 +162,18 @@ def hours_for(budget: float) -> float:
     ValueError
         If the budget is not above 0 or too small to be shown.
     """
+    from uavsim.studies.compiled import JIT
+
     if not 0.0 < budget < inf:
         raise ValueError(f"--false-alarms = {budget:g}: must be above 0 an hour")
+    most, where = (MOST_HOURS, "") if JIT else (MOST_HOURS_PLAIN, " where numba's JIT is off")
     needed = NONE / (MARGIN * budget)
-    if needed > MOST_HOURS:
+    if needed > most:
         raise ValueError(
             f"--false-alarms = {budget:g}: to show so few takes {needed:.3g} h without an alarm, and at most "
-            f"{MOST_HOURS:g} h are run; {NONE / (MARGIN * MOST_HOURS):.4f} an hour can be shown"
+            f"{most:g} h are run{where}; {NONE / (MARGIN * most):.4f} an hour can be shown"
         )
-    return min(MOST_HOURS, max(LEAST_HOURS, ceil(6.0 * FEW / budget) / 6.0))
+    return min(most, max(LEAST_HOURS, ceil(6.0 * FEW / budget) / 6.0))
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ def spread(
     parts
         Functions without arguments.
     workers
-        Threads; None: one a processor.
+        Threads; None: one a processor. Where numba's JIT is off the parts are done one after the other.
     progress
         Called after each part.
 
@@ -32,6 +32,10 @@ def spread(
     An interrupt, or what a part raises, ends it: parts that have not begun are left out, those that have are waited
     for.
     """
+    from uavsim.studies.compiled import JIT
+
+    if not JIT:  # threads of plain Python wait for each other, and keep an interrupt waiting
+        return _one_by_one(parts, progress)
     with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
         waiting: list[Future[T]] = [pool.submit(part) for part in parts]
         try:
@@ -43,3 +47,12 @@ def spread(
             pool.shutdown(wait=True, cancel_futures=True)
             raise
     return [future.result() for future in waiting]
+
+
+def _one_by_one(parts: Sequence[Callable[[], T]], progress: Progress | None) -> list[T]:
+    found = []
+    for done, part in enumerate(parts, 1):
+        found.append(part())
+        if progress is not None:
+            progress(done / len(parts))
+    return found

@@ -1,0 +1,74 @@
+"""What is within reach where numba's JIT is off, so that `roc` ends in about ten minutes instead of in hours.
+
+Plain Python takes `COST` for a sample and detector, some thirty times what a compiled loop takes. Hours and launches
+beyond `MOST` and `MOST_TRIED` are left out, which is told. What is left gives the same results as with the JIT.
+"""
+
+from dataclasses import dataclass
+from math import ceil
+
+from uavsim.studies.compiled import JIT
+from uavsim.studies.false_alarms import PIECE, PIECES_AN_HOUR
+
+COST = 0.4e-6  # s a sample and detector, the mean over the kinds on one core of 2024; they take 0.1 to 0.9
+MOST = 1.0e9  # samples times detectors of disturbances, 7 minutes
+MOST_TRIED = 1.5e8  # samples times detectors of launches, a minute, and as many in the cells
+LAUNCH = 1.9  # s of a launch until it is decided; most of it is the wait before
+COUNTED = 40.0  # settings that `tune` counts over all its hours, about
+OFF = "numba's JIT is off (NUMBA_DISABLE_JIT)"
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What `roc` does: hours of the mix, launches, and launches in each cell."""
+
+    hours: float
+    trials: int
+    cells: int
+
+
+def within_reach(asked: Work, *, detectors: int, compared: int, rate: float, jit: bool = JIT) -> Work:
+    """Return what ends in about ten minutes; nothing grows, and with the JIT nothing changes.
+
+    Parameters
+    ----------
+    asked
+        What the user wants.
+    detectors, compared
+        Settings in the sweep; settings times cells in the comparison.
+    rate
+        Samples a second, Hz.
+    """
+    if jit:
+        return asked
+    pieces = int(MOST / (PIECE * rate * detectors))
+    mix = 1
+    while mix + 1 + 3 * ceil((mix + 1) / 4) <= pieces:  # three classes have a quarter of the hours each
+        mix += 1
+    tried = MOST_TRIED / (LAUNCH * rate)
+    return Work(
+        min(asked.hours, mix / PIECES_AN_HOUR),
+        min(asked.trials, max(1, int(tried / detectors))),
+        min(asked.cells, max(1, int(tried / max(1, compared)))),
+    )
+
+
+def told(asked: Work, done: Work) -> str:
+    """Say what is left out; empty if nothing is."""
+    names = (("hours", "h of the mix"), ("trials", "launches"), ("cells", "launches a cell"))
+    changed = [
+        f"{getattr(done, key):.2g} {what} instead of {getattr(asked, key):g}"
+        if key == "hours"
+        else f"{getattr(done, key)} {what} instead of {getattr(asked, key)}"
+        for key, what in names
+        if getattr(done, key) != getattr(asked, key)
+    ]
+    return f"{OFF}: so that it ends in about ten minutes, {', '.join(changed)}" if changed else ""
+
+
+def tuning_told(hours: float, rate: float, *, jit: bool = JIT) -> str:
+    """Say how long `tune` takes for the hours that its budget needs; empty with the JIT."""
+    if jit:
+        return ""
+    minutes = COUNTED * hours * 3600.0 * rate * COST / 60.0
+    return f"{OFF}: this takes about {minutes:.0f} min, and less for a larger --false-alarms"
