@@ -20,6 +20,10 @@ coefficient is a state, until the flight is steady. The scale error of the accel
 goes with the push: b gains the variance σ_k² |Δ(f²)| when the mean specific force f changes.
 
 Airspeed is valid from V = 8 σ_V on, which is 2 V* of the pressures' law (`paper`) and holds for a coasting filter, too.
+
+A filter that has left all bounds has diverged: from there on the pressures alone are filtered, as before the launch.
+After a step of a clock (`uavsim.onboard.stamps`) the filter begins anew in flight, V by the pressures, as soon as the
+clocks of head and accelerometer agree.
 """
 
 from collections import deque
@@ -39,6 +43,8 @@ from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
+from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, MOST_PRESSURE
+from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
 ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
 TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
@@ -46,8 +52,9 @@ VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
 PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
 STEADY = 2.0  # s after the recognition, from which on the ports are watched and k is known
-FASTEST = 450.0  # m/s; Mach 1 and more is outside the relation between pressures and airspeed
-THINNEST, THICKEST = 1e3, 2e5  # Pa, beyond the range of any of the sensors
+BEYOND = 450.0  # m/s, far past Mach 1: a filter that is there has diverged
+THINNEST, THICKEST = 1e3, 2e5  # Pa, of the filter's static pressure, alike
+MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go
 COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 MODEL = 0.1  # Pa, what the model of a pressure is off by, whatever its sensor: 0.1 ms of the stroke's rise
@@ -89,12 +96,13 @@ class AidedFilter:
     aided = True
     core: type[EnergyFilter] = OnePassFilter
     __slots__ = (
-        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_lift",
-        "_measured", "_misses", "_noise", "_on_rail", "_patience", "_push", "_push_variance", "_raw_scale", "_rest",
-        "_rows", "_scale_variance", "_settings", "_settled", "_static_age", "_static_seen", "_static_variance",
-        "_steady_from", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share",
-        "_total_age", "_total_seen", "_total_variance", "_turning", "_u", "_w", "_waiting", "_wind", "energy",
-        "flying", "news", "static_watch", "time", "watch",
+        "_apart", "_density", "_fastest", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls",
+        "_heat", "_lift", "_longest", "_measured", "_misses", "_noise", "_on_rail", "_patience", "_push",
+        "_push_variance", "_raw_scale", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_settled",
+        "_stamps", "_static_age", "_static_ends", "_static_seen", "_static_variance", "_steady_from", "_steps", "_t",
+        "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age", "_total_ends", "_total_seen",
+        "_total_variance", "_turning", "_u", "_usual", "_w", "_waiting", "_wind", "energy", "flying", "news",
+        "static_watch", "time", "watch",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -116,14 +124,20 @@ class AidedFilter:
         self._on_rail = aided.on_rail
         self._temperature_share = 0.5 * noise.temperature_sd
         self._raw_scale = self._waiting.scale
-        self.flying = False
-        self.time = self._t = self._t_total = self._t_static = -inf
+        self._fastest = FASTEST if settings.fastest is None else settings.fastest
+        self._longest = jump(noise.head_rate)
+        self._stamps = Stamps(self._longest)
+        self._total_ends, self._static_ends = Conversions(self._longest), Conversions(self._longest)
+        self.flying = self._apart = False
+        self._steps, self._read = 0, -inf
+        self.time = self._t = -inf
         self._temperature = self._density = self._gas = self._heat = nan
         self._tare = 0.0
         self._settled, self._patience, self._misses, self._push_variance = False, inf, 0, 0.0
         self._steady_from = inf
         self._static_seen: tuple[float, float, float] | None = None  # Pa, its instant, s, mean of −f_z since, m/s²
         self._total_seen: tuple[float, float] | None = None  # tared, Pa, and NIS
+        self._usual = [0, 0]
         self._begin_watch()
         self.news: list[tuple[float, str, str, str]] = []
         self._u = self._w = 0.0
@@ -138,48 +152,124 @@ class AidedFilter:
 
     def _wait(self, t: float, fx: float, fy: float, fz: float) -> None:
         self._gained.add(t, fx, fy, fz)
-        if not self.flying:
+        if not self.flying and self._gained.newest == t:  # it has been taken
             self._rest.add(t, fx)
 
     def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
         """Take one reading of the head; as `PaperFilter.step`, the pressures being the filter's own at `t`."""
+        if not 0.0 < t - self._read <= self._longest and not self._admit(t):
+            return None
+        self._read = t
+        if self._steps != self._gained.steps:
+            self._steps = self._gained.steps
+            self._lose_time(t)
+        if self._apart and -self._longest <= t - self._gained.newest <= self._longest:
+            self._begin_in_flight(t)
         if self.flying:
-            estimate = self._fly(t, p_total, p_static, temperature, t_total, t_static)
-            energy = self.energy
-            if -FASTEST < energy.v < FASTEST and THINNEST < energy.p < THICKEST:
-                return estimate
-            self.flying = False  # the force is of no flight: from here on by the pressures alone
-            self._total_seen = self._static_seen = None
-            self.news.append((t, "airspeed_fault", "both", "diverged"))
-        self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
-        return self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
+            try:
+                estimate = self._fly(t, p_total, p_static, temperature, t_total, t_static)
+                if self._sound():
+                    return estimate
+            except (ArithmeticError, ValueError):  # Python's for what is inf or NaN on the aircraft
+                pass
+            self._fall_back(t, "diverged")
+        estimate = self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
+        if estimate is not None:
+            self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
+        return estimate
 
-    def launched(self, t: float) -> None:
-        """Start the energy-rate filter before a launch that has been recognised at `t`, and bring it up to date."""
-        if self.flying or not t > -inf:
-            return
-        start = max(t - self._settings.aided.replay, self._gained.oldest, self._tare_end)
-        start = min(start, t)
-        self.energy = self._begin(start)
+    def _sound(self) -> bool:
+        """Whether the filter is within all bounds; NaN is not."""
+        energy = self.energy
+        return -BEYOND < energy.v < BEYOND and THINNEST < energy.p < THICKEST and energy.vv > 0.0 and energy.pp > 0.0
+
+    def _fall_back(self, t: float, kind: str) -> None:
+        """From here on go by the pressures alone: the force is of no flight, or of another time."""
+        self.flying = False
+        self._total_seen = self._static_seen = None
+        self._waiting.forget_time()
+        self._tell_of(t, "airspeed_fault", "both", kind)
+
+    def _tell_of(self, t: float, event: str, channel: str, kind: str = "") -> None:
+        """Put something into the news."""
+        self.news.append((t, event, channel, kind))
+        if len(self.news) > MOST_NEWS:
+            del self.news[0]
+
+    # -- clocks ------------------------------------------------------------------------------------------------------
+
+    def _admit(self, t: float) -> bool:
+        """Whether a reading is taken whose stamp does not follow the last."""
+        if not self._stamps.admit(t, self._read):
+            return False
+        if self._read > -inf:
+            self._lose_time(t)
+            self._rows.clear()
+        self._total_ends.forget()
+        self._static_ends.forget()
+        return True
+
+    def _lose_time(self, t: float) -> None:
+        """After a step of a clock in flight the integral of f_x and the filter's time mean nothing."""
+        if self.flying:
+            self._apart = True
+            self._fall_back(t, "clock")
+
+    def _begin_in_flight(self, t: float) -> None:
+        """Begin anew at `t`, s: V by the next total pressure, both ports believed, climb and bias not known."""
+        aided, before = self._settings.aided, self.energy.p
+        core = self._core(
+            speed_sd=self._settings.wind_sd,
+            rest=(0.0, 0.0),
+            static=(before if THINNEST < before < THICKEST else airdata.STANDARD_PRESSURE, ANYWHERE),
+            difference_sd=sqrt(self._waiting.tare()[1]),
+        )
+        core.bs, core.ss = 0.0, 0.5 * aided.slope_rate**2 * aided.slope_time
+        self.energy, self._wind, self._folded = core, 0.0, (inf, inf, 0.0)
+        for watch, channel in ((self.watch, "total"), (self.static_watch, "static")):
+            if watch.faulty:
+                self._tell_of(t, "airspeed_recovered", channel)
+        self._start(t - OLDEST, -inf, t + STEADY)
+        self._apart = False
+        self._tell_of(t, "airspeed_recovered", "both")
+
+    def _start(self, start: float, patience: float, steady_from: float) -> None:
+        """Fly from an instant on, s; see `PATIENCE` and `STEADY`."""
         self.flying = True
         self.time = self._t = start
         self._u, self._w = self._gained.at(start)
         self._push.forget()
-        self._settled, self._patience, self._push_variance = False, t + PATIENCE, 0.0
-        self._steady_from = t + STEADY
+        self._settled, self._patience, self._push_variance = False, patience, 0.0
+        self._steady_from = steady_from
+        self._misses = 0
         self._begin_watch()
-        self._t_total = self._t_static = -inf
-        for row in self._rows:
-            if row[4] - self._total_age > start or row[5] - self._static_age > start:
-                self._fly(*row)
+        self._total_ends.forget()
+        self._static_ends.forget()
+
+    def launched(self, t: float) -> None:
+        """Start the energy-rate filter before a launch that has been recognised at `t`, and bring it up to date."""
+        if self.flying or not -LATEST < t < LATEST:
+            return
+        start = max(t - self._settings.aided.replay, self._gained.oldest, self._tare_end)
+        start = min(start, t)
+        self.energy = self._begin(start)
+        self._apart = False
+        self._start(start, t + PATIENCE, t + STEADY)
+        try:
+            for row in self._rows:
+                if row[4] - self._total_age > start or row[5] - self._static_age > start:
+                    self._fly(*row)
+        except (ArithmeticError, ValueError):  # as in `step`
+            self._fall_back(t, "diverged")
         self._rows.clear()
 
     def _begin_watch(self) -> None:
         """Look at how the sensors repeat themselves on the rail, and begin to watch their ports."""
-        usual = [longest_row(row[i] for row in self._rows) for i in (1, 2)]
-        walk = self._noise.walk
+        if self._rows:
+            self._usual = [longest_row(row[i] for row in self._rows) for i in (1, 2)]
+        usual, walk = self._usual, self._noise.walk
         self.watch = TotalWatch(self._settings.aided, self._total_variance, walk, usual[0])
         self.static_watch = StaticWatch(self._static_variance, walk, usual[1])
         self._lift = GRAVITY
@@ -192,13 +282,13 @@ class AidedFilter:
 
     def rearmed(self, t: float) -> None:
         """Go back to waiting: the launch was none."""
-        self.flying = False
+        self.flying = self._apart = False
+        self._waiting.forget_time()
         self._rest.forget()
 
     def _begin(self, start: float) -> EnergyFilter:
-        aided, noise = self._settings.aided, self._noise
         static = self._waiting.static.value
-        known = 0.0 < static < inf
+        known = LEAST_PRESSURE <= static <= MOST_PRESSURE
         self._tare, tare_variance = self._waiting.tare()
         warm = self._waiting.temperature
         self._measured = warm > 0.0
@@ -206,23 +296,35 @@ class AidedFilter:
         rest, rest_sd = self._rest.result(start)
         self._folded = (inf, inf, 0.0)
         wind_sd = self._look_at_wind(start, tare_variance, static / self._gas)
-        core = self.core(
+        core = self._core(
             speed_sd=wind_sd,
-            rest_force=rest,
-            rest_sd=rest_sd,
+            rest=(rest, rest_sd),
+            static=(static, AROUND) if known else (airdata.STANDARD_PRESSURE, ANYWHERE),
+            difference_sd=sqrt(tare_variance),
+        )
+        core.v, self._ground = self._wind, core.p
+        return core
+
+    def _core(
+        self, speed_sd: float, rest: tuple[float, float], static: tuple[float, float], difference_sd: float
+    ) -> EnergyFilter:
+        """Make the filter; what f_x reads at rest and the static pressure each with its standard deviation."""
+        aided, noise = self._settings.aided, self._noise
+        return self.core(
+            speed_sd=speed_sd,
+            rest_force=rest[0],
+            rest_sd=rest[1],
             bias_sd=aided.bias_sd,
             bias_time=aided.bias_time,
             slope_rate=aided.slope_rate,
             slope_time=aided.slope_time,
-            static=static if known else airdata.STANDARD_PRESSURE,
-            static_sd=AROUND if known else ANYWHERE,
+            static=static[0],
+            static_sd=static[1],
             static_walk=aided.static_walk,
-            difference_sd=sqrt(tare_variance),
+            difference_sd=difference_sd,
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
         )
-        core.v, self._ground = self._wind, core.p
-        return core
 
     def _look_at_wind(self, start: float, tare_variance: float, density: float) -> float:
         """Find the airspeed on the rail by the pressures there; return its standard deviation, m/s."""
@@ -249,7 +351,7 @@ class AidedFilter:
         if not t > self._t:
             return None
         if self._total_seen is not None or self._static_seen is not None:
-            self.tidy()
+            self._judge()
         self._t = t
         energy = self.energy
         if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
@@ -261,21 +363,25 @@ class AidedFilter:
         self._density = energy.p / self._gas
         if self._gust_falls:
             self._gust = gust_density(self._settings.aided, (self._ground - energy.p) / (GRAVITY * self._density))
-        nis_total, nis_static = self._take(p_total, p_static, t_total, t_static)
+        total_read, static_read = (
+            LEAST_PRESSURE <= p_total <= MOST_PRESSURE, LEAST_PRESSURE <= p_static <= MOST_PRESSURE,
+        )  # fmt: skip
+        end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
+        nis_total, nis_static = self._take(
+            p_total, p_static, end_total, end_static, total_read and end_total == end_total,
+            static_read and end_static == end_static,
+        )  # fmt: skip
         raw = nan
-        if 0.0 < p_total < inf and 0.0 < p_static < inf and temperature > 0.0:  # as `airdata.compressible_airspeed`
+        if total_read and static_read and temperature > 0.0:  # as `airdata.compressible_airspeed`
             excess = (p_total - self._tare - p_static) / p_static
             raw = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess))) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
-    def _take(self, p_total: float, p_static: float, t_total: float, t_static: float) -> tuple[float, float]:
+    def _take(
+        self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
+    ) -> tuple[float, float]:
         """Take what is new of a reading of the head; return the normalised innovations squared."""
         nis_total = nis_static = nan
-        new_total, new_static = t_total > self._t_total, t_static > self._t_static
-        if new_total:
-            self._t_total, new_total = t_total, 0.0 < p_total < inf
-        if new_static:
-            self._t_static, new_static = t_static, 0.0 < p_static < inf
         to, at = t_total - self._total_age, t_static - self._static_age
         if new_total and new_static and self._steady(to, at):
             nis_total, nis_static = self._take_both(p_total, p_static, t_total, to, at)
@@ -348,7 +454,9 @@ class AidedFilter:
         u, w = self._gained.at(to)
         gained = u - self._u
         self._force = gained / dt - self._rest.mean
-        variance = self._gust * (v if v > SLOWEST else SLOWEST) * dt + w - self._w
+        variance = self._gust * (v if v > SLOWEST else SLOWEST) * dt
+        if w > self._w:  # else readings have come late, and that they might be lost has been counted
+            variance = variance + w - self._w
         begin, end, rate = self._folded
         if to > begin and self.time < end:
             variance += rate * (min(to, end) - max(self.time, begin))
@@ -365,7 +473,7 @@ class AidedFilter:
             spread = energy.pp + self._static_variance
             if self.static_watch.coast(at, reading, difference, spread):
                 energy.pp += difference * difference
-                self.news.append((self._t, "airspeed_recovered", "static", ""))
+                self._tell_of(self._t, "airspeed_recovered", "static")
             return nan
         nis = energy.static(reading, self._static_variance, self._density * energy.v * ahead)
         self._misses = 0 if energy.taken else self._misses + 1
@@ -381,7 +489,7 @@ class AidedFilter:
         self.static_watch.flag(kind, self.energy, self._density, self.watch.port.frozen.lost)
         self._misses = 0
         self.watch.port.restart()
-        self.news.append((self._t, "airspeed_fault", "static", kind))
+        self._tell_of(self._t, "airspeed_fault", "static", kind)
 
     def _take_total(self, reading: float, end: float) -> float:
         energy = self.energy
@@ -410,6 +518,13 @@ class AidedFilter:
 
     def tidy(self) -> None:
         """Watch the ports by what was read last; the filter still stands where it stood then."""
+        try:
+            self._judge()
+        except (ArithmeticError, ValueError):  # as in `step`
+            self._fall_back(self._t, "diverged")
+
+    def _judge(self) -> None:
+        """Judge the ports; see `tidy`."""
         if self._static_seen is not None:
             reading, at, lift = self._static_seen
             self._static_seen = None
@@ -435,7 +550,7 @@ class AidedFilter:
             return
         elif kind != "frozen" or not (self.static_watch.doubtful and self.watch.port.unsure):
             self.watch.flag(kind, self.energy, self._density, self._gust)
-            self.news.append((self._t, "airspeed_fault", "total", kind))
+            self._tell_of(self._t, "airspeed_fault", "total", kind)
 
     def _coast(self, end: float, reading: float, tared: float, variance: float) -> None:
         """Compare a flagged port with the coasting filter; take it back when they have agreed for long enough."""
@@ -447,7 +562,7 @@ class AidedFilter:
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
         if self.watch.coast(reading, tared, difference, spread, end):
             energy.vv += difference * difference
-            self.news.append((self._t, "airspeed_recovered", "total", ""))
+            self._tell_of(self._t, "airspeed_recovered", "total")
 
     def _settle(self, reading: float) -> bool:
         """Whether the push has brought V far enough from 0 for a total pressure; if it never does, take V from that."""
@@ -484,9 +599,12 @@ class AidedFilter:
         """Predict to the time of the reading and say what is known."""
         energy = self.energy
         dt = t - self.time
-        if dt < 0.0:  # noqa: PLR1730 - a call of max costs a tenth of a microsecond
-            dt = 0.0
-        u, w = self._gained.at(t)
+        if dt > 0.0:
+            u, w = self._gained.at(t)
+            if w < self._w:  # noqa: PLR1730 - as in `_go`, and a call of max costs a tenth of a microsecond
+                w = self._w
+        else:
+            dt, u, w = 0.0, self._u, self._w
         gained = u - self._u
         drift = energy.b + energy.s
         speed = energy.v + gained - dt * drift
@@ -503,7 +621,7 @@ class AidedFilter:
         y = 1.0 + speed * speed / self._heat
         total = static * y * y * y * sqrt(y)
         valid = (
-            speed >= VALID * sd
+            VALID * sd <= speed <= self._fastest
             and self._measured
             and (sd < COASTED or not self.watch.faulty)
             and not self.static_watch.faulty  # without it V and the climb are hardly told apart

@@ -5,6 +5,8 @@ Means over blocks of half a second; the one before the last is used, which holds
 
 from math import inf, sqrt
 
+from uavsim.onboard.plausible import MOST_FORCE
+
 BLOCK = 0.5  # s
 WANDER = 0.02  # m/s², what a mean is off by beside its noise: the bias since then
 UNKNOWN = 5.0  # m/s², standard deviation while nothing has been read: that of a rail of up to 30°
@@ -37,10 +39,10 @@ class RestForce:
         self._last = self._done = (0.0, 0)  # mean, readings
 
     def add(self, t: float, f: float) -> None:
-        """Take a reading; one that is no number is passed over."""
-        if not (-inf < f < inf and -inf < t < inf):
+        """Take a reading whose time stamp is believed; one that is NaN or implausible is passed over."""
+        if not -MOST_FORCE < f < MOST_FORCE:
             return
-        if t - self._start >= BLOCK:
+        if not 0.0 <= t - self._start < BLOCK:  # a step of the clock ends it, too
             if self._count:
                 self._done, self._last = self._last, (self._sum / self._count, self._count)
             self._start, self._sum, self._count = t, 0.0, 0

@@ -13,10 +13,13 @@ A visible wind is a headwind until the push tells otherwise.
 from collections.abc import Iterable
 from math import inf, sqrt
 
+from uavsim.onboard.plausible import LEAST_PRESSURE, MOST_PRESSURE
+
 VISIBLE = 2.0  # V*
 HIDDEN = 0.632  # V*, rms of the clipped root at rest
 OPENED = 0.02  # s after the tare in which the last covered conversion leaves the head
 FEWEST = 3  # conversions
+STRONGEST = 60.0  # m/s; nobody launches in a hurricane: a port is broken, and nothing is known of the wind
 
 Row = tuple[float, float, float, float, float, float]
 
@@ -44,7 +47,7 @@ def wind_at_rest(
         if not (start + OPENED < t_total <= end and start + OPENED < t_static and t_total > last):
             continue
         last = t_total
-        if 0.0 < p_total < inf and 0.0 < p_static < inf:
+        if LEAST_PRESSURE <= p_total <= MOST_PRESSURE and LEAST_PRESSURE <= p_static <= MOST_PRESSURE:
             total += p_total - p_static
             count += 1
     if count < FEWEST or not density > 0.0:
@@ -52,6 +55,8 @@ def wind_at_rest(
     difference, sigma = total / count - tare, sqrt(each / count + variance)
     square = 2.0 * sigma / density
     wind = sqrt(2.0 * difference / density) if difference > 0.0 else 0.0
+    if wind > STRONGEST:
+        return 0.0, inf
     if wind * wind >= VISIBLE * VISIBLE * square:
         return wind, 0.5 * square / wind
     return 0.0, sqrt(wind * wind + HIDDEN * HIDDEN * square)

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from annotated_types import Interval
 
 from uavsim import airdata
+from uavsim.onboard.plausible import FASTEST
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +86,9 @@ class EstimatorSettings:
         Mole fraction of water vapour in the air.
     calibration : float
         K, which multiplies the airspeed.
+    fastest : float or None
+        The greatest airspeed that the aircraft can have, m/s: no estimate above it is valid. None: four times the
+        airspeed that its flight computer holds, on a rig that of sound.
     aided : group
         Of the aided filter.
     """
@@ -98,4 +102,5 @@ class EstimatorSettings:
     wind_sd: Annotated[float, Interval(gt=0.0, le=100.0)] = 3.0
     vapour_fraction: Annotated[float, Interval(ge=0.0, le=0.2)] = 0.0
     calibration: Annotated[float, Interval(gt=0.0, le=10.0)] = 1.0
+    fastest: Annotated[float, Interval(gt=0.0, le=FASTEST)] | None = None
     aided: AidedSettings = field(default_factory=AidedSettings)

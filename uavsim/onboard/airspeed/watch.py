@@ -169,7 +169,8 @@ class TotalWatch:
             before = self._sound if kind == "leak" else self._before[0]
             if before[0] > -inf:
                 self._t0, self._u0, self._v, self._vv, self._p, self._bias, self._bb = before
-        since, slope = self._t - self._t0, density * self._v
+        speed = max(self._v, 1.0)
+        since, slope = self._t - self._t0, density * speed
         if kind == "frozen":
             self.port.back.flag(self._t, test.held, test.held_variance)
         else:
@@ -177,7 +178,7 @@ class TotalWatch:
         self.faulty, self._astray = True, kind in ("drift", "leak")
         energy.v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
         bb = min(self._bb, self._bias_sd * self._bias_sd)
-        energy.vv = self._vv + gust * self._v * since + bb * since * since + UNSEEN * UNSEEN
+        energy.vv = self._vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN
         energy.vv += energy.pp / (slope * slope)
         energy.b, energy.bb = self._bias, bb
         energy.vb = -bb * since
