@@ -38,8 +38,7 @@ from typing import Annotated, Any, Protocol
 from annotated_types import Interval
 
 from uavsim import airdata
-from uavsim.airdata import MAX_TEMPERATURE, MIN_TEMPERATURE
-from uavsim.onboard.plausible import LEAST_PRESSURE, MOST_FORCE, MOST_PRESSURE
+from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_FORCE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.stamps import Stamps, jump
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
@@ -373,7 +372,7 @@ class FlightComputer:
             self._changed_since = None
         else:
             self._doubt(t, valid)
-        if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
+        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
             self._temperature = temperature
         if self._reference_pressure is None or isnan(self._temperature):
             return

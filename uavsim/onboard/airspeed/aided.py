@@ -30,7 +30,7 @@ from collections import deque
 from math import expm1, inf, log1p, nan, sqrt
 
 from uavsim import airdata
-from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MAX_TEMPERATURE, MIN_TEMPERATURE
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed.energy import GATE, SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
@@ -42,8 +42,17 @@ from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
+from uavsim.onboard.airspeed.spikes import Spikes
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
-from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, MOST_PRESSURE
+from uavsim.onboard.plausible import (
+    FASTEST,
+    LEAST_PRESSURE,
+    LEAST_TEMPERATURE,
+    MOST_FLIGHT_FORCE,
+    MOST_FORCE,
+    MOST_PRESSURE,
+    MOST_TEMPERATURE,
+)
 from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
 ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
@@ -54,6 +63,8 @@ PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what
 STEADY = 2.0  # s after the recognition, from which on the ports are watched and k is known
 BEYOND = 450.0  # m/s, far past Mach 1: a filter that is there has diverged
 THINNEST, THICKEST = 1e3, 2e5  # Pa, of the filter's static pressure, alike
+SUDDEN, SUDDEN_SD = 100.0, 15.0  # Pa, and standard deviations: how far a pressure of steady flight goes at once, …
+STEEP = 3e3  # Pa/s, and beside that: 60 m/s and 40 m/s² for the total pressure, a dive at 250 m/s for the static
 MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go
 COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
@@ -99,8 +110,9 @@ class AidedFilter:
         "_apart", "_density", "_fastest", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls",
         "_heat", "_lift", "_longest", "_measured", "_misses", "_noise", "_on_rail", "_patience", "_push",
         "_push_variance", "_raw_scale", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_settled",
-        "_stamps", "_static_age", "_static_ends", "_static_seen", "_static_variance", "_steady_from", "_steps", "_t",
-        "_tare", "_tare_end", "_temperature", "_temperature_share", "_total_age", "_total_ends", "_total_seen",
+        "_stamps", "_static_age", "_static_ends", "_static_last", "_static_seen", "_static_spikes",
+        "_static_variance", "_steady_from", "_steps", "_sudden", "_t", "_tare", "_tare_end", "_temperature",
+        "_temperature_share", "_torn", "_total_age", "_total_ends", "_total_last", "_total_seen", "_total_spikes",
         "_total_variance", "_turning", "_u", "_usual", "_w", "_waiting", "_wind", "energy", "flying", "news",
         "static_watch", "time", "watch",
     )  # fmt: skip
@@ -128,6 +140,11 @@ class AidedFilter:
         self._longest = jump(noise.head_rate)
         self._stamps = Stamps(self._longest)
         self._total_ends, self._static_ends = Conversions(self._longest), Conversions(self._longest)
+        sd = sqrt(max(self._total_variance, self._static_variance))
+        self._sudden = max(SUDDEN, SUDDEN_SD * sd)
+        self._total_spikes, self._static_spikes = Spikes(), Spikes()
+        self._total_last = self._static_last = nan
+        self._torn = False
         self.flying = self._apart = False
         self._steps, self._read = 0, -inf
         self.time = self._t = -inf
@@ -170,7 +187,7 @@ class AidedFilter:
         if self.flying:
             try:
                 estimate = self._fly(t, p_total, p_static, temperature, t_total, t_static)
-                if self._sound():
+                if estimate is None or self._sound(estimate):
                     return estimate
             except (ArithmeticError, ValueError):  # Python's for what is inf or NaN on the aircraft
                 pass
@@ -180,16 +197,18 @@ class AidedFilter:
             self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
         return estimate
 
-    def _sound(self) -> bool:
-        """Whether the filter is within all bounds; NaN is not."""
+    def _sound(self, estimate: Estimate) -> bool:
+        """Whether the filter is within all bounds, which NaN is not, and no variance of it is below 0."""
         energy = self.energy
+        if estimate[7] < 0.0 or estimate[8] < 0.0:
+            return False
         return -BEYOND < energy.v < BEYOND and THINNEST < energy.p < THICKEST and energy.vv > 0.0 and energy.pp > 0.0
 
     def _fall_back(self, t: float, kind: str) -> None:
         """From here on go by the pressures alone: the force is of no flight, or of another time."""
         self.flying = False
         self._total_seen = self._static_seen = None
-        self._waiting.forget_time()
+        self._waiting.resume(self._total_last, self._static_last, self._sudden)
         self._tell_of(t, "airspeed_fault", "both", kind)
 
     def _tell_of(self, t: float, event: str, channel: str, kind: str = "") -> None:
@@ -243,7 +262,8 @@ class AidedFilter:
         self._push.forget()
         self._settled, self._patience, self._push_variance = False, patience, 0.0
         self._steady_from = steady_from
-        self._misses = 0
+        self._misses, self._torn = 0, False
+        self._total_last = self._static_last = nan
         self._begin_watch()
         self._total_ends.forget()
         self._static_ends.forget()
@@ -252,6 +272,7 @@ class AidedFilter:
         """Start the energy-rate filter before a launch that has been recognised at `t`, and bring it up to date."""
         if self.flying or not -LATEST < t < LATEST:
             return
+        self._gained.bound(MOST_FORCE)
         start = max(t - self._settings.aided.replay, self._gained.oldest, self._tare_end)
         start = min(start, t)
         self.energy = self._begin(start)
@@ -278,6 +299,7 @@ class AidedFilter:
     def unfolding(self, t: float) -> None:
         """For a while trust the integral of f_x less."""
         aided = self._settings.aided
+        self._gained.bound(MOST_FLIGHT_FORCE if aided.flight_force is None else aided.flight_force)
         self._folded = (t, t + aided.unfolding_time, aided.unfolding_rate**2)
 
     def rearmed(self, t: float) -> None:
@@ -285,6 +307,7 @@ class AidedFilter:
         self.flying = self._apart = False
         self._waiting.forget_time()
         self._rest.forget()
+        self._gained.bound(MOST_FORCE)
 
     def _begin(self, start: float) -> EnergyFilter:
         static = self._waiting.static.value
@@ -352,9 +375,9 @@ class AidedFilter:
             return None
         if self._total_seen is not None or self._static_seen is not None:
             self._judge()
-        self._t = t
+        before, self._t = self._t, t
         energy = self.energy
-        if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
+        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
             if temperature != self._temperature:
                 self._warm(temperature)
             self._measured = True
@@ -366,6 +389,16 @@ class AidedFilter:
         total_read, static_read = (
             LEAST_PRESSURE <= p_total <= MOST_PRESSURE, LEAST_PRESSURE <= p_static <= MOST_PRESSURE,
         )  # fmt: skip
+        if self.time > self._steady_from:
+            reach = self._sudden + STEEP * (t - before)
+            if total_read and not -reach <= p_total - self._total_last <= reach:
+                total_read = self._total_jumps(p_total, reach)
+            if static_read and not -reach <= p_static - self._static_last <= reach:
+                static_read = self._static_jumps(p_static, reach)
+        if total_read:
+            self._total_last = p_total
+        if static_read:
+            self._static_last = p_static
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         nis_total, nis_static = self._take(
             p_total, p_static, end_total, end_static, total_read and end_total == end_total,
@@ -376,6 +409,23 @@ class AidedFilter:
             excess = (p_total - self._tare - p_static) / p_static
             raw = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess))) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
+
+    def _total_jumps(self, reading: float, reach: float) -> bool:
+        """Whether a sudden total pressure is no spike: it is taken for what it is, and the port is flagged."""
+        if not self._total_spikes.believe(reading, self._total_last, reach):
+            return False
+        if self._total_last == self._total_last and not (self.watch.faulty or self.static_watch.faulty):
+            self.watch.flag("jump", self.energy, self._density, self._gust)
+            self._tell_of(self._t, "airspeed_fault", "total", "jump")
+        return True
+
+    def _static_jumps(self, reading: float, reach: float) -> bool:
+        """Whether a sudden static pressure is no spike; see `_total_jumps`."""
+        if not self._static_spikes.believe(reading, self._static_last, reach):
+            return False
+        if self._static_last == self._static_last and not self.static_watch.faulty:
+            self._flag_static("jump")
+        return True
 
     def _take(
         self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
@@ -457,6 +507,8 @@ class AidedFilter:
         variance = self._gust * (v if v > SLOWEST else SLOWEST) * dt
         if w > self._w:  # else readings have come late, and that they might be lost has been counted
             variance = variance + w - self._w
+            if self._gained.torn(w - self._w, dt):
+                self._torn = True
         begin, end, rate = self._folded
         if to > begin and self.time < end:
             variance += rate * (min(to, end) - max(self.time, begin))
@@ -525,6 +577,9 @@ class AidedFilter:
 
     def _judge(self) -> None:
         """Judge the ports; see `tidy`."""
+        if self._torn:  # nobody knows what the force has made of the pressures meanwhile
+            self._torn = False
+            self.watch.pause()
         if self._static_seen is not None:
             reading, at, lift = self._static_seen
             self._static_seen = None

@@ -33,12 +33,11 @@ from collections.abc import Callable
 from math import inf, isnan, nan, sqrt
 
 from uavsim import airdata
-from uavsim.airdata import MAX_TEMPERATURE, MIN_TEMPERATURE
 from uavsim.onboard.airspeed.interface import Estimate, NoiseModel
 from uavsim.onboard.airspeed.random_walk import Channel, RandomWalk, process_noise
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.tare import Tare
-from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, MOST_PRESSURE
+from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.stamps import Conversions, Stamps, jump
 
 FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the clipped root
@@ -160,7 +159,7 @@ class PaperFilter:
             self._total.add(p_total)
         if new_static:
             self._static.add(p_static)
-        if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
+        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
             self._temperature = temperature
         else:
             temperature = nan
@@ -206,6 +205,19 @@ class PaperFilter:
             sd = self._wind_sd
         return sd, VALID * star <= speed <= self._fastest
 
+    def restart(self) -> None:
+        """Know nothing of the pressures, but their tare."""
+        self.forget_time()
+        self._total.restart()
+        self._static.restart()
+
+    def resume(self, total: float, static: float, reach: float) -> None:
+        """Go on after a pause in which others have read the pressures: anew, unless both are within `reach`, Pa."""
+        if abs(total - self._total.value) <= reach and abs(static - self._static.value) <= reach:
+            self.forget_time()
+        else:
+            self.restart()
+
     def forget_time(self) -> None:
         """Take the next reading whatever its time stamp, if that is one."""
         self._t = -inf
@@ -214,9 +226,7 @@ class PaperFilter:
 
     def _begin_anew(self, t: float) -> None:
         """After a step of the clock the pressures may be any."""
-        self.forget_time()
-        self._total.restart()
-        self._static.restart()
+        self.restart()
         if self._cover is not None and t <= self._cover.end:
             self._taring = self._cover
 

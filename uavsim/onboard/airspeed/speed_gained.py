@@ -22,6 +22,7 @@ from uavsim.onboard.stamps import Stamps, jump
 SIZE = 1024  # readings; at 1 kHz a second
 GAPS = 16  # that are remembered; more than that in a second is no accelerometer
 GAP = 5.0  # periods
+NOISY = 10.0  # standard deviations of a reading, so far a force of flight is plausible where it shakes heavily
 GAP_SD = 5.0  # m/s², what an acceleration that nobody has read may be: that of a strong pull-up in flight
 
 
@@ -48,13 +49,14 @@ class SpeedGained:
     """
 
     __slots__ = (
-        "_f", "_first", "_gap", "_gaps", "_head", "_lag", "_lift", "_lifts", "_old", "_rate", "_size", "_stamps",
-        "_sum", "_t", "_u", "_white", "newest", "steps",
+        "_f", "_first", "_gap", "_gaps", "_head", "_lag", "_lift", "_lifts", "_most", "_most_lift", "_old", "_rate",
+        "_shake", "_size", "_stamps", "_sum", "_t", "_u", "_white", "newest", "steps",
     )  # fmt: skip
 
     def __init__(self, sd: float, rate: float, size: int = SIZE, lag: float = 0.0) -> None:
         self._rate, self._size, self._lag = rate, size, lag
         self._gap = GAP / rate
+        self._shake, self._most, self._most_lift = NOISY * sd, MOST_FORCE, MOST_FORCE
         self._white = sd * sd / rate
         self._t, self._u = [-inf] * size, [0.0] * size  # time stamps
         self._gaps: deque[tuple[float, float, float]] = deque(maxlen=GAPS)  # begin, end, variance
@@ -72,8 +74,8 @@ class SpeedGained:
     def add(self, t: float, fx: float, _fy: float = 0.0, fz: float = 0.0) -> None:
         """Take a reading; one that is NaN or implausible, or left out for its time stamp, is passed over."""
         elapsed = t - self.newest
-        if not (0.0 < elapsed <= self._gap and -MOST_FORCE < fx < MOST_FORCE):
-            if not (-MOST_FORCE < fx < MOST_FORCE and self._stamps.admit(t, self.newest)):
+        if not (0.0 < elapsed <= self._gap and -self._most < fx < self._most):
+            if not (-self._most < fx < self._most and self._stamps.admit(t, self.newest)):
                 return
             elapsed = self._after_a_gap(t, fx)
         u = self._sum = self._sum + 0.5 * (self._f + fx) * elapsed
@@ -99,11 +101,19 @@ class SpeedGained:
         self._first, self._f = t, fx
         return 0.0
 
+    def bound(self, most: float) -> None:
+        """Be told the greatest plausible force, m/s²; in flight it is less than that of a launch."""
+        self._most, self._most_lift = max(most, self._shake), most
+
+    def torn(self, variance: float, time: float) -> bool:
+        """Whether w has grown by so much, m²/s², in a time, s, that readings must have been missing."""
+        return variance > 4.0 * self._white * time + 0.25 * (GAP_SD * self._gap) ** 2
+
     def lift(self) -> float:
-        """Return the mean of −f_z since it was last asked for, m/s²; NaN without readings that are plausible."""
+        """Return the mean of −f_z since it was last asked for, m/s²; NaN without one that is plausible."""
         lift, lifts = self._lift, self._lifts
         self._lift, self._lifts = 0.0, 0
-        return lift / lifts if lifts and -MOST_FORCE < lift / lifts < MOST_FORCE else nan
+        return lift / lifts if lifts and -self._most_lift < lift / lifts < self._most_lift else nan
 
     def at(self, t: float) -> tuple[float, float]:
         """Return u, m/s, and w, m²/s², at a time; before the oldest reading those of the oldest."""
