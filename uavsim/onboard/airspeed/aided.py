@@ -63,8 +63,8 @@ PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what
 STEADY = 2.0  # s after the recognition, from which on the ports are watched and k is known
 BEYOND = 450.0  # m/s, far past Mach 1: a filter that is there has diverged
 THINNEST, THICKEST = 1e3, 2e5  # Pa, of the filter's static pressure, alike
-SUDDEN, SUDDEN_SD = 100.0, 15.0  # Pa, and standard deviations: how far a pressure of steady flight goes at once, …
-STEEP = 3e3  # Pa/s, and beside that: 60 m/s and 40 m/s² for the total pressure, a dive at 250 m/s for the static
+SUDDEN, SUDDEN_SD = 100.0, 15.0  # Pa, and standard deviations: how far a pressure goes at once, and beside that
+STEEP, STROKE = 3e3, 5e4  # Pa/s: 60 m/s and 40 m/s², or a dive at 250 m/s; and in the stroke 80 m/s and 500 m/s²
 MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go
 COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
@@ -107,14 +107,13 @@ class AidedFilter:
     aided = True
     core: type[EnergyFilter] = OnePassFilter
     __slots__ = (
-        "_apart", "_density", "_fastest", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls",
-        "_heat", "_lift", "_longest", "_measured", "_misses", "_noise", "_on_rail", "_patience", "_push",
-        "_push_variance", "_raw_scale", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_settled",
-        "_stamps", "_static_age", "_static_ends", "_static_last", "_static_seen", "_static_spikes",
-        "_static_variance", "_steady_from", "_steps", "_sudden", "_t", "_tare", "_tare_end", "_temperature",
-        "_temperature_share", "_torn", "_total_age", "_total_ends", "_total_last", "_total_seen", "_total_spikes",
-        "_total_variance", "_turning", "_u", "_usual", "_w", "_waiting", "_wind", "energy", "flying", "news",
-        "static_watch", "time", "watch",
+        "_apart", "_density", "_either", "_fastest", "_flight_force", "_folded", "_force", "_gained", "_gas", "_ground",
+        "_gust", "_gust_falls", "_heat", "_lift", "_longest", "_measured", "_misses", "_noise", "_on_rail", "_patience",
+        "_push", "_push_variance", "_raw_scale", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_settled",
+        "_stamps", "_static_age", "_static_ends", "_static_last", "_static_seen", "_static_spikes", "_static_variance",
+        "_steady_from", "_steps", "_sudden", "_t", "_tare", "_tare_end", "_temperature", "_temperature_share", "_torn",
+        "_total_age", "_total_ends", "_total_last", "_total_seen", "_total_spikes", "_total_variance", "_turning", "_u",
+        "_usual", "_w", "_waiting", "_wind", "energy", "flying", "news", "static_watch", "time", "watch",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -122,7 +121,9 @@ class AidedFilter:
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
-        self._rest = RestForce(noise.accelerometer_sd)
+        force = settings.aided.flight_force
+        self._flight_force = MOST_FLIGHT_FORCE if force is None else force
+        self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._rows: deque[Row] = deque(maxlen=ROWS)
         self._total_age = 0.5 * noise.total_window + noise.total_lag
         self._static_age = 0.5 * noise.static_window + noise.static_lag
@@ -144,7 +145,7 @@ class AidedFilter:
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
         self._total_last = self._static_last = nan
-        self._torn = False
+        self._torn = self._either = False
         self.flying = self._apart = False
         self._steps, self._read = 0, -inf
         self.time = self._t = -inf
@@ -262,7 +263,7 @@ class AidedFilter:
         self._push.forget()
         self._settled, self._patience, self._push_variance = False, patience, 0.0
         self._steady_from = steady_from
-        self._misses, self._torn = 0, False
+        self._misses, self._torn, self._either = 0, False, False
         self._total_last = self._static_last = nan
         self._begin_watch()
         self._total_ends.forget()
@@ -299,7 +300,7 @@ class AidedFilter:
     def unfolding(self, t: float) -> None:
         """For a while trust the integral of f_x less."""
         aided = self._settings.aided
-        self._gained.bound(MOST_FLIGHT_FORCE if aided.flight_force is None else aided.flight_force)
+        self._gained.bound(self._flight_force)
         self._folded = (t, t + aided.unfolding_time, aided.unfolding_rate**2)
 
     def rearmed(self, t: float) -> None:
@@ -389,12 +390,11 @@ class AidedFilter:
         total_read, static_read = (
             LEAST_PRESSURE <= p_total <= MOST_PRESSURE, LEAST_PRESSURE <= p_static <= MOST_PRESSURE,
         )  # fmt: skip
-        if self.time > self._steady_from:
-            reach = self._sudden + STEEP * (t - before)
-            if total_read and not -reach <= p_total - self._total_last <= reach:
-                total_read = self._total_jumps(p_total, reach)
-            if static_read and not -reach <= p_static - self._static_last <= reach:
-                static_read = self._static_jumps(p_static, reach)
+        reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
+        if total_read and not -reach <= p_total - self._total_last <= reach:
+            total_read = self._total_jumps(p_total, reach)
+        if static_read and not -reach <= p_static - self._static_last <= reach:
+            static_read = self._static_jumps(p_static, reach)
         if total_read:
             self._total_last = p_total
         if static_read:
@@ -414,16 +414,22 @@ class AidedFilter:
         """Whether a sudden total pressure is no spike: it is taken for what it is, and the port is flagged."""
         if not self._total_spikes.believe(reading, self._total_last, reach):
             return False
-        if self._total_last == self._total_last and not (self.watch.faulty or self.static_watch.faulty):
+        self._either = self._total_last == self._total_last
+        if self._watched(self._total_last) and not (self.watch.faulty or self.static_watch.faulty):
             self.watch.flag("jump", self.energy, self._density, self._gust)
             self._tell_of(self._t, "airspeed_fault", "total", "jump")
         return True
+
+    def _watched(self, last: float) -> bool:
+        """Whether the ports are watched and a pressure has been read before."""
+        return self.time > self._steady_from and last == last
 
     def _static_jumps(self, reading: float, reach: float) -> bool:
         """Whether a sudden static pressure is no spike; see `_total_jumps`."""
         if not self._static_spikes.believe(reading, self._static_last, reach):
             return False
-        if self._static_last == self._static_last and not self.static_watch.faulty:
+        self._either = self._static_last == self._static_last
+        if self._watched(self._static_last) and not self.static_watch.faulty:
             self._flag_static("jump")
         return True
 
@@ -564,6 +570,10 @@ class AidedFilter:
         if not energy.taken and self.time < self._steady_from:  # so early it is rather the filter that is wrong
             slope = self._density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.vv += (energy.innovation / slope) ** 2
+        if self._either and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
+            self._either = False
+            if energy.v < 0.0:  # of an airspeed and its opposite the pressure is the same
+                energy.restart(-energy.v, energy.vv)
         if self.time > self._steady_from and not self.static_watch.faulty:
             self._total_seen = tared, nis
         return nis

@@ -13,6 +13,7 @@ A visible wind is a headwind until the push tells otherwise.
 from collections.abc import Iterable
 from math import inf, sqrt
 
+from uavsim.onboard.airspeed.majority import Majority
 from uavsim.onboard.plausible import LEAST_PRESSURE, MOST_PRESSURE
 
 VISIBLE = 2.0  # V*
@@ -42,14 +43,14 @@ def wind_at_rest(
     density : float
         Of the air, kg/m³.
     """
-    total, count, last = 0.0, 0, -inf
+    differences, last = Majority(each), -inf
     for _, p_total, p_static, _, t_total, t_static in rows:
         if not (start + OPENED < t_total <= end and start + OPENED < t_static and t_total > last):
             continue
         last = t_total
         if LEAST_PRESSURE <= p_total <= MOST_PRESSURE and LEAST_PRESSURE <= p_static <= MOST_PRESSURE:
-            total += p_total - p_static
-            count += 1
+            differences.add(p_total - p_static)
+    total, count = differences.most.sum, differences.most.count
     if count < FEWEST or not density > 0.0:
         return 0.0, inf
     difference, sigma = total / count - tare, sqrt(each / count + variance)
