@@ -6,7 +6,7 @@ or some in a row. So most readings are sound, as they are on an aircraft whose b
 
 import math
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 Force = tuple[float, float, float, float]
 """t, fx, fy, fz."""
@@ -145,11 +145,15 @@ START, STROKE, CRUISE = 3.0, 0.4, 32.0  # s, s, m/s: a push of 80 m/s² from STA
 REST = 2.5  # m/s², along x on the rail
 
 
-def flight(until: float, seed: int = 1) -> Iterator[tuple[Force | Row, float]]:
-    """Yield sound readings, 1 kHz and 100 Hz, of a launch and a level flight in light gusts, and the true airspeed.
+Sample = tuple[Force | Row, float, float]
+"""A reading, when it was taken, s, and the true airspeed then, m/s."""
 
-    The airspeed that is commanded goes up and down by 1 m/s in 4 s, which the specific force shows; the gust, of 0.2 m/s
-    and 6 s, it does not.
+
+def flight(until: float, seed: int = 1) -> Iterator[Sample]:
+    """Yield sound readings, 1 kHz and 100 Hz, of a launch and a level flight in light gusts.
+
+    The airspeed goes up and down by 1 m/s in 4 s, which the specific force shows, and by a gust of 0.2 m/s and 6 s,
+    which it does not.
     """
     draw = random.Random(seed)
     gauss = draw.gauss
@@ -165,10 +169,10 @@ def flight(until: float, seed: int = 1) -> Iterator[tuple[Force | Row, float]]:
         speed += 0.001 * force
         history = [*history[1:], speed + gust]
         rest = 0.0 if flown > 0.0 else REST
-        yield (t, force + rest + gauss(0.0, 0.3), gauss(0.0, 0.3), -9.8 + gauss(0.0, 0.3)), speed + gust
+        yield (t, force + rest + gauss(0.0, 0.3), gauss(0.0, 0.3), -9.8 + gauss(0.0, 0.3)), t, speed + gust
         if not k % 10:
             total, static = head(t, history[3], draw)[1], head(t, history[0], draw)[2]
-            yield (t, total + 30.0, static, KELVIN, t - 0.004, t - 0.007), speed + gust
+            yield (t, total + 30.0, static, KELVIN, t - 0.004, t - 0.007), t, speed + gust
 
 
 Damage = Callable[[float], float]
@@ -186,15 +190,37 @@ def plus(value: float) -> Damage:
 
 
 def damaged(
-    stream: Iterator[tuple[Force | Row, float]], length: int, column: int, damage: Damage, start: float, count: int
-) -> Iterator[tuple[Force | Row, float]]:
+    stream: Iterable[Sample], length: int, column: int, damage: Damage, start: float, count: int
+) -> Iterator[Sample]:
     """Hurt one column (0: the stamp) of some readings in a row, from `start`, s, on; `length` says of which sensor."""
     left = count
-    for reading, truth in stream:
-        if left and len(reading) == length and reading[0] >= start:
+    for reading, t, speed in stream:
+        if left and len(reading) == length and t >= start:
             left -= 1
             hurt = list(reading)
             hurt[column] = damage(hurt[column])
-            yield tuple(hurt), truth  # type: ignore[misc]
+            yield tuple(hurt), t, speed  # type: ignore[misc]
         else:
-            yield reading, truth
+            yield reading, t, speed
+
+
+def battered(stream: Iterable[Sample], seed: int, start: float, stop: float, share: float = 0.01) -> Iterator[Sample]:
+    """Hurt any column of any reading between two times, s, as `readings` does."""
+    draw = random.Random(seed)
+    value, stamp = Bursts(draw, share, 100), Bursts(draw, share, 30)
+    bursts = [Bursts(draw, share, 60) for _ in DAMAGE]
+    for reading, t, speed in stream:
+        if not start <= t < stop:
+            yield reading, t, speed
+            continue
+        hurt = list(reading)
+        if len(hurt) == 4:
+            if (how := value()) is not None:
+                hurt[how.choice((1, 1, 2, 3))] = how.choice(FORCES) if how.random() < 0.6 else how.choice(LOADS)
+            if (how := stamp()) is not None:
+                hurt[0] = shifted(how, hurt[0])
+        else:
+            for place, burst in enumerate(bursts):
+                if (how := burst()) is not None:
+                    hurt[place] = DAMAGE[place](how, hurt[place])
+        yield tuple(hurt), t, speed  # type: ignore[misc]

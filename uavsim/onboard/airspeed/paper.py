@@ -111,7 +111,8 @@ class PaperFilter:
         self._stamps, self._total_ends, self._static_ends = Stamps(longest), Conversions(longest), Conversions(longest)
         self._temperature = nan
         self._tare = self._tare_variance = 0.0
-        self._taring = self._cover = None if tare_window is None else Tare(*tare_window, noise)
+        self._taring = None if tare_window is None else Tare(*tare_window, noise)
+        self._cover: Tare | None = None  # that a step of the clock has perhaps ended before its time
 
     @staticmethod
     def _channels(settings: EstimatorSettings, noise: NoiseModel) -> tuple[Channel, Channel]:
@@ -227,7 +228,9 @@ class PaperFilter:
     def _begin_anew(self, t: float) -> None:
         """After a step of the clock the pressures may be any."""
         self.restart()
-        if self._cover is not None and t <= self._cover.end:
+        if self._taring is not None:
+            self._cover = self._taring
+        elif self._cover is not None and t <= self._cover.end:
             self._taring = self._cover
 
     @property

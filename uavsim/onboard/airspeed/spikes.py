@@ -2,7 +2,7 @@
 
 A value that is further from the last one taken than the air can move it in the time between is a spike, or the port is
 in another place. It is left out, until `AGREED` such values have come in a row of which each is as near to the one
-before it as it should be: then the last of them is taken, and what is wrong with the port is a matter of its tests.
+before it as it should be: then the last of them is taken. One that is near the last one taken ends the row.
 """
 
 from math import nan
@@ -13,10 +13,10 @@ from uavsim.onboard.stamps import AGREED
 class Spikes:
     """Values of one channel that are too far from the last one taken."""
 
-    __slots__ = ("_row", "_value")
+    __slots__ = ("_after", "_row", "_value")
 
     def __init__(self) -> None:
-        self._value, self._row = nan, 0
+        self._after, self._value, self._row = nan, nan, 0
 
     def believe(self, value: float, last: float, reach: float) -> bool:
         """Whether such a value is taken.
@@ -32,10 +32,10 @@ class Spikes:
         """
         if last != last:
             return True
-        near = -reach <= value - self._value <= reach
-        self._row = self._row + 1 if near else 1
-        self._value = value
+        follows = last == self._after and -reach <= value - self._value <= reach
+        self._row = self._row + 1 if follows else 1
+        self._after, self._value = last, value
         if self._row < AGREED:
             return False
-        self._row = 0
+        self._after = nan
         return True
