@@ -9,6 +9,8 @@ module alone copies them from the one into the settings of the other. What no de
 * A tube of length L along the unit vector n, from the port to the sensor, holds a column of air that a specific force f
   presses on the sensor with −ρ L n·f.
 * A membrane's sensitivity has been calibrated, with an error that is a share of what is usual for the part.
+* An aircraft is never faster than four times the airspeed that it is to hold; a rig is as fast as sound, and what is
+  felt on it is bounded by the part alone.
 * Turbulence as MIL-F-8785C has it at low altitude, h and lengths in feet: σ_w = 0.1 W₂₀,
   σ_u = σ_w/(0.177 + 0.000823 h)^0.4, L_u = h/(0.177 + 0.000823 h)^1.2; it is flown through at the height of cruise.
 """
@@ -24,8 +26,11 @@ from sensors.settings import AirDataSettings, PressureSettings, TubeSettings
 from sensors.unit import G0, draw_error, unit_vector
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_PRESSURE, STANDARD_TEMPERATURE
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
+from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
+from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import Scenario
 
+FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
 FOOT = 0.3048  # m, ISO 80000-3
 LOWEST, HIGHEST = 10.0, 1000.0  # ft, between which the law of low altitude holds
 DENSITY = STANDARD_PRESSURE / (GAS_CONSTANT_DRY_AIR * STANDARD_TEMPERATURE)  # kg/m³
@@ -72,18 +77,30 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
         accelerometer_scale_sd=belief.accelerometer_scale * accelerometer.scale_sd,
         accelerometer_rate=accelerometer.rate,
         accelerometer_lag=belief.accelerometer_lag * (scenario.accelerometer.delay + _delay(accelerometer)),
+        head_rate=air.rate,
     )
 
 
 def believed_air(scenario: Scenario) -> EstimatorSettings:
-    """Return the estimator's settings with the turbulence that the environment declares, if it declares any."""
-    settings = scenario.estimator
+    """Return the estimator's settings with the turbulence that the environment declares, and the aircraft's bound."""
+    settings = _bounded(scenario)
     height = max(scenario.flight_computer.height, LOWEST * FOOT)
     sd, length = turbulence(scenario.environment.turbulence_wind_20ft, height)
     sd *= scenario.mismatch.gust
     if not sd > 0.0:
         return settings
     return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length, gust_height=height))
+
+
+def _bounded(scenario: Scenario) -> EstimatorSettings:
+    """Return the estimator's settings with the greatest airspeed and force that there can be."""
+    flown, settings = scenario.plant.kind == AIRCRAFT, scenario.estimator
+    aided, fastest = settings.aided, settings.fastest
+    if fastest is None:
+        fastest = min(FASTER * scenario.flight_computer.airspeed, FASTEST) if flown else FASTEST
+    if aided.flight_force is None:
+        aided = replace(aided, flight_force=MOST_FLIGHT_FORCE if flown else MOST_FORCE)
+    return replace(settings, fastest=fastest, aided=aided)
 
 
 def turbulence(wind_20ft: float, height: float) -> tuple[float, float]:

@@ -25,6 +25,7 @@ from uavsim.onboard.airspeed import (
     process_noise,
     steady_gain,
 )
+from uavsim.onboard.plausible import FASTEST
 
 NAN, INF = math.nan, math.inf
 STATIC = 101_325.0  # Pa
@@ -262,7 +263,7 @@ def test_deviation_is_the_propagated_one(model, speed):
         ends = [airdata.airspeed(**point | {name: value + h}, **options) for h in (-step, step)]
         variance += ((ends[1] - ends[0]) / (2.0 * step) * sd) ** 2
     assert row[2] == pytest.approx(math.sqrt(variance), rel=3e-5)
-    assert row[6] is True
+    assert row[6] is (row[1] <= FASTEST)  # 363 m/s by Bernoulli with this calibration is none
 
 
 # rms error of the clipped root in V* at V/V* = 0, 0.5 … 2: an independent numerical study of the Gaussian's root.
@@ -340,7 +341,7 @@ def test_tare_removes_the_pairs_offset():
     assert rows[20][4] == pytest.approx(STATIC + 54.0 - 54.0, abs=3.0)
     assert rows[-1][4] == pytest.approx(STATIC, abs=1e-9)
     assert all(row[3] == 0.0 for row in rows[20:])
-    flying = estimator.step(10.0, total_at(30.0) + 54.0, STATIC, KELVIN, 10.0, 10.0)
+    flying = estimator.step(1.5, total_at(30.0) + 54.0, STATIC, KELVIN, 1.5, 1.5)
     assert flying[3] == pytest.approx(30.0, abs=1e-9)
 
 
@@ -384,7 +385,7 @@ def test_tare_passes_over_what_is_missing_and_counts_conversions():
 def test_tare_without_a_reading_is_zero():
     estimator = PaperFilter(EstimatorSettings(), QUIET, (5.0, 6.0))
     assert estimator.step(5.5, NAN, STATIC, KELVIN, 5.5, 5.5)[1] == 0.0
-    row = estimator.step(7.0, total_at(30.0), STATIC, KELVIN, 7.0, 7.0)
+    row = estimator.step(6.1, total_at(30.0), STATIC, KELVIN, 6.1, 6.1)
     assert row[3] == pytest.approx(30.0, abs=1e-9)
 
 

@@ -32,7 +32,7 @@ def by_step(chosen: DetectorSettings, rate: float, force: Array) -> list[int]:
 
 
 def rough(rate: float, n: int, seed: int) -> Array:
-    """Loads of all lengths, shocks, noise, readings that repeat, NaN and infinite ones; (n, 3), m/s²."""
+    """Loads of all lengths, shocks, noise, NaN, infinite and implausible readings; (n, 3), m/s²."""
     generator = np.random.default_rng(seed)
     force = np.empty((n, 3))
     for axis in range(3):
@@ -45,6 +45,10 @@ def rough(rate: float, n: int, seed: int) -> Array:
     force[generator.random((n, 3)) < 0.002] = np.nan
     force[generator.random((n, 3)) < 0.0005] = np.inf
     force[generator.random((n, 3)) < 0.0005] = -np.inf
+    for size in (3999.9, 4000.0, -4000.0, 1e30):
+        force[generator.random((n, 3)) < 0.0005] = size
+    at = n // 3
+    force[at : at + n // 20] = 5000.0
     return force
 
 

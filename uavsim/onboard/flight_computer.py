@@ -22,21 +22,28 @@ pitch, safe level + K_c (pitch - level pitch), and the height is held on, until 
 Nor is the height flown on of a static port that is flagged: the pitch is then that of level flight, at which the safe
 throttle climbs.
 
+Whatever the readings, it goes on: one that is NaN or implausible (`uavsim.onboard.plausible`) is a missing one, one
+whose time stamp is not believed (`uavsim.onboard.stamps`) is left out, and after a step of the clock what is waited for
+is still as far away as it was.
+
 Sees readings and time, never truth. Scalar, constant memory.
 """
 
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, isfinite, isnan, nan, radians
+from math import isnan, nan, radians
 from typing import Annotated, Any, Protocol
 
 from annotated_types import Interval
 
 from uavsim import airdata
+from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_FORCE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.stamps import Stamps, jump
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
 LONGEST_STEP = 0.02  # s; a gap between readings counts as no more than this in an integral
+MOST_EVENTS = 10_000  # that are kept, then the oldest go; a flight has some ten
 RAIL_BLOCK = 0.5  # s, over which the mean on the rail is taken; the block before the last one is used
 
 Estimate = tuple[float, float, float, float, float, float, bool, float, float]
@@ -205,6 +212,9 @@ class FlightComputer:
         self._block_sum, self._block_count = 0.0, 0
         self._last_block: float | None = None
         self._rail_mean = 0.0
+        self._t = nan
+        self._stamps = Stamps(jump(accelerometer_rate))
+        self._longest = self._stamps.longest
         self._last = 0.0
         self._speed_gain = 0.0
         self._quiet_since: float | None = None
@@ -224,6 +234,11 @@ class FlightComputer:
         state = self.state
         if state == "flying":
             return
+        if not 0.0 < t - self._t <= self._longest:
+            if not self._stamps.admit(t, self._t):
+                return
+            self._step_of_the_clock(t - self._t)
+        self._t = t
         along = fx if self._axis is None else self._axis[1] * (fx, fy, fz)[self._axis[0]]
         if state == "waiting":
             self._average_rail(t, along)
@@ -233,6 +248,17 @@ class FlightComputer:
             self._follow_stroke(t, along)
         elif t >= self._next_action:
             self._act(t)
+
+    def _step_of_the_clock(self, step: float) -> None:
+        """Move what is waited for, and what has been waited for, by a step, s; NaN before the first reading."""
+        if isnan(step):
+            return
+        self._next_action += step
+        self._last += step
+        if self._block_start is not None:
+            self._block_start += step
+        if self._quiet_since is not None:
+            self._quiet_since += step
 
     def air_data(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
@@ -245,7 +271,7 @@ class FlightComputer:
             self._feel = self._tidy
         if self._news:
             self._report()
-        if self._reference_pressure is None and isfinite(estimate[5]):
+        if self._reference_pressure is None and LEAST_PRESSURE <= estimate[5] <= MOST_PRESSURE:
             self._reference_pressure = estimate[5]
         if self.state == "flying":
             self._hold(estimate, temperature)
@@ -269,7 +295,7 @@ class FlightComputer:
 
     def _average_rail(self, t: float, fx: float) -> None:
         """Block means of f_x on the rail; the one before the last holds nothing of a stroke that has just begun."""
-        if isnan(fx) or isnan(t):
+        if not -MOST_FORCE < fx < MOST_FORCE:
             return
         if self._block_start is None:
             self._block_start = t
@@ -291,7 +317,7 @@ class FlightComputer:
         self.estimator.launched(t)
 
     def _follow_stroke(self, t: float, fx: float) -> None:
-        if isnan(fx) or not t > self._last:  # a late reading, or one without a time, counts no time
+        if not -MOST_FORCE < fx < MOST_FORCE:
             return
         self._speed_gain += (fx - self._rail_mean) * min(t - self._last, LONGEST_STEP)
         self._last = t
@@ -337,7 +363,7 @@ class FlightComputer:
     def _hold(self, estimate: Estimate, temperature: float) -> None:
         """Airspeed by throttle, height by pitch. Without a valid estimate both stay as they are until it is given up.
 
-        A static pressure or temperature that is no number leaves the height at what it was last.
+        A static pressure or temperature that is NaN or implausible leaves the height at what it was last.
         """
         t, airspeed, _, _, _, p_static, valid, _, _ = estimate
         dt = _within(t - self._last_estimate, 0.0, 10 * LONGEST_STEP)
@@ -346,9 +372,11 @@ class FlightComputer:
             self._changed_since = None
         else:
             self._doubt(t, valid)
-        if isfinite(temperature):
+        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
             self._temperature = temperature
-        if self._reference_pressure is None or isnan(self._temperature) or not 0.0 < p_static < inf:
+        if self._reference_pressure is None or isnan(self._temperature):
+            return
+        if not LEAST_PRESSURE <= p_static <= MOST_PRESSURE:
             return
         if self._trusted and not valid:
             return
@@ -363,9 +391,10 @@ class FlightComputer:
 
     def _doubt(self, t: float, valid: bool) -> None:
         """Give up an estimate that stays invalid; take it up again when it has stayed valid."""
-        if self._changed_since is None and self.settings.loss_time > 0.0:
-            self._changed_since = t
-        elif self._changed_since is None or t - self._changed_since >= self.settings.loss_time:
+        since = self._changed_since
+        if since is None or t < since:  # at first, or after a step of the clock
+            since = self._changed_since = t
+        if t - since >= self.settings.loss_time:
             self._trusted, self._changed_since = valid, None
             self._note(t, "airspeed_back" if valid else "airspeed_lost")
 
@@ -409,6 +438,8 @@ class FlightComputer:
 
     def _note(self, t: float, event: str, **details: float | str) -> None:
         self.events.append({"t": t, "event": event, **details})
+        if len(self.events) > MOST_EVENTS:
+            del self.events[0]
 
 
 def _within(value: float, low: float, high: float) -> float:

@@ -41,6 +41,7 @@ from uavsim.onboard.launch import (
 from uavsim.onboard.launch.detector import ROUNDING
 from uavsim.onboard.launch.field import BLOCK
 from uavsim.onboard.launch.glr import SCALE
+from uavsim.onboard.plausible import MOST_FORCE
 
 Forces = NDArray[np.float64] | NDArray[np.float32]
 Indices = NDArray[np.int64]
@@ -156,7 +157,8 @@ class BatchDetector:
 
 def _row(force: Forces, name: str) -> Forces:
     if name == "any":
-        return cast(Forces, np.fmax(np.fmax.reduce(np.abs(force), axis=1), 0.0))  # passes over NaN
+        size = np.abs(force)
+        return cast(Forces, np.where(size < MOST_FORCE, size, 0.0).max(axis=1))  # NaN is not below either
     column = force[:, "xyz".index(name[1])]
     return column if name[0] == "+" else -column
 

@@ -5,7 +5,8 @@ A kernel reads forces along the launch axis, m/s², at t_k = k / rate, k₀ ≤ 
     dt_k = t_k - t_{k-1},   a detector's first sample: 1 / rate
 
 in the order in which `uavsim.onboard.launch` adds and multiplies, so sums agree to the last bit: no fused or reordered
-arithmetic. Regular sampling has no gaps; NaN forces have the effect that `step` gives them. At an alarm the detector
+arithmetic. Regular sampling has no gaps; forces that are NaN or
+implausible have the effect that `step` gives them. At an alarm the detector
 begins anew with the next sample. Most samples of most signals say nothing while nothing is begun; that way is short.
 
 All kernels are called alike: (f, k₀, rate, p, q, x, y, out) → number of alarms.
@@ -22,6 +23,7 @@ y[0] is the k of the first sample since the detector began. To add a detector: a
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.onboard.plausible import MOST_FORCE
 from uavsim.studies.compiled import compiled, wide
 
 Forces = NDArray[np.float64] | NDArray[np.float32]
@@ -39,10 +41,10 @@ def hold(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wh
     for i in range(f.size):
         v = wide(f[i])
         if not holding:
-            if not v > trigger:
+            if not trigger < v < MOST_FORCE:
                 continue
             holding, held = True, period
-        elif v > threshold:
+        elif threshold < v < MOST_FORCE:
             held += (k0 + i) / rate - (k0 + i - 1) / rate
         else:
             holding, held = False, 0.0
@@ -69,14 +71,14 @@ def nested(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: 
     for i in range(f.size):
         v = wide(f[i])
         if opened != 1:
-            if opened == 2 or not v > trigger:
+            if opened == 2 or not trigger < v < MOST_FORCE:
                 continue
             opened, level, count, total = 1, 1, 1, 1
         else:
             if total == level * samples:
                 level += 1
             total += 1
-            count += v > threshold
+            count += threshold < v < MOST_FORCE
         if total < level * samples:
             continue
         if count * of >= needed * total:
@@ -103,14 +105,14 @@ def nested_axes(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals
             v = wide(f[axis, i])
             at = 1 + 4 * axis
             if y[at] != 1:
-                if y[at] == 2 or not v > trigger:
+                if y[at] == 2 or not trigger < v < MOST_FORCE:
                     continue
                 y[at : at + 4] = 1
             else:
                 if y[at + 3] == y[at + 1] * samples:
                     y[at + 1] += 1
                 y[at + 3] += 1
-                y[at + 2] += v > threshold
+                y[at + 2] += threshold < v < MOST_FORCE
             if y[at + 3] < y[at + 1] * samples:
                 continue
             if y[at + 2] * of >= needed * y[at + 3]:
@@ -134,7 +136,7 @@ def sliding(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y:
     count, place, alarms = y[1], y[2], 0
     ring = y[3:]
     for i in range(f.size):
-        above = 1 if wide(f[i]) > threshold else 0
+        above = 1 if threshold < wide(f[i]) < MOST_FORCE else 0
         if count + above == 0:
             continue
         count += above - ring[place]
@@ -162,7 +164,7 @@ def sequence(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y
     for i in range(f.size):
         v = wide(f[i])
         if total == 0:
-            if not v > trigger:
+            if not trigger < v < MOST_FORCE:
                 row = 0
                 continue
             row += 1
@@ -171,7 +173,7 @@ def sequence(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y
             count = total = row
         else:
             total += 1
-            count += v > threshold
+            count += threshold < v < MOST_FORCE
         if total < samples:
             continue
         recognised = count >= needed
@@ -191,11 +193,12 @@ def cusum(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: W
     reference, rise, fall, limit, period = p
     total, first, alarms = x[0], y[0], 0
     for i in range(f.size):
-        excess: float = wide(f[i]) - reference
+        v = wide(f[i])
+        excess: float = v - reference
         if total == 0.0 and not excess > 0.0:
             continue
         if excess > rise:
-            excess = rise
+            excess = rise if v < MOST_FORCE else fall
         elif not excess > fall:  # NaN too
             excess = fall
         k = k0 + i
@@ -226,14 +229,14 @@ def adaptive_cusum(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Re
         if abs(away) <= most:
             mean += away * weight if weight < 1.0 else away
             size = abs(away)  # without a branch that noise would make unpredictable
-        elif away > 0.0 or away < 0.0:
+        elif -MOST_FORCE < v < MOST_FORCE:
             mean += (most if away > 0.0 else -most) * min(1.0, weight)
         rough += (size - rough) * (dt * forget)
         excess: float = v - reference
         if total == 0.0 and not excess > 0.0:
             continue
         if excess > rise:
-            excess = rise
+            excess = rise if v < MOST_FORCE else fall
         elif not excess > fall:  # NaN too
             excess = fall
         total += excess * dt
@@ -262,9 +265,10 @@ def glr(f: Forces, k0: int, rate: float, p: Numbers, q: Wholes, x: Reals, y: Who
     place, quiet, alarms = y[1], y[2], 0
     sums, ring = y[3 : 3 + windows], y[3 + windows :]
     for i in range(f.size):
-        above = wide(f[i]) - reference + fall
+        v = wide(f[i])
+        above = v - reference + fall
         added = 0
-        if not above > 0.0:  # NaN too
+        if not (above > 0.0 and v < MOST_FORCE):  # NaN too
             if quiet >= longest:
                 continue
             quiet += 1

@@ -4,10 +4,11 @@ The mean on the rail is four numbers of the state x: the block before the last f
 time of the running one.
 """
 
-from math import isfinite, sqrt
+from math import sqrt
 
 import numpy as np
 
+from uavsim.onboard.plausible import MOST_FORCE
 from uavsim.studies.compiled import compiled, wide
 from uavsim.studies.kernels import Counts, Forces, Numbers, Reals, Wholes
 
@@ -17,7 +18,7 @@ def on_rail(
     v: float, dt: float, before: float, last: float, summed: float, time: float, block: float, rounding: float
 ) -> tuple[float, float, float, float]:
     """Mean on the rail after one more force, as `RailMean.add`."""
-    if isfinite(v):
+    if -MOST_FORCE < v < MOST_FORCE:
         summed += v * dt
         time += dt
         if time * rounding >= block:
@@ -40,7 +41,7 @@ def px4(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Who
         if elapsed < interval:
             continue
         worth, elapsed = min(max(elapsed, 0.010), 0.050), 0.0
-        held = held + worth if v - before > threshold else 0.0
+        held = held + worth if v - before > threshold and v < MOST_FORCE else 0.0
         if held > hold:
             before = last = np.nan
             summed = time = elapsed = held = 0.0
@@ -65,7 +66,8 @@ def px4_norm(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y
         dt = t - then if k0 + i != first else period
         then = t
         fx, fy, fz = wide(f[0, i]), wide(f[1, i]), wide(f[2, i])
-        if isfinite(fx + fy + fz):
+        sound = abs(fx) < MOST_FORCE and abs(fy) < MOST_FORCE and abs(fz) < MOST_FORCE
+        if sound:
             time += dt
             sx, sy, sz = sx + fx * dt, sy + fy * dt, sz + fz * dt
             if time * rounding >= block:
@@ -76,7 +78,7 @@ def px4_norm(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y
             continue
         worth, elapsed = min(max(elapsed, 0.010), 0.050), 0.0
         a, b, c = fx - bx, fy - by, fz - bz
-        held = held + worth if sqrt(a * a + b * b + c * c) > threshold else 0.0
+        held = held + worth if sound and sqrt(a * a + b * b + c * c) > threshold else 0.0
         if held > hold:
             bx = by = bz = lx = ly = lz = np.nan
             sx = sy = sz = time = elapsed = held = 0.0
@@ -114,7 +116,7 @@ def ardupilot(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, 
             if elapsed < interval:
                 continue
             elapsed, a = 0.0, v - before
-            v0, v1, v2, v3, v4 = v1, v2, v3, v4, a if a == a else 0.0
+            v0, v1, v2, v3, v4 = v1, v2, v3, v4, a if a == a and abs(v) < MOST_FORCE else 0.0
             waiting = v0 + v1 + v2 + v3 + v4 >= 5.0 * threshold
             launched = waiting and delay <= 0.0
         if launched:
@@ -140,7 +142,7 @@ def inav(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wh
     for i in range(f.size):
         v = wide(f[i])
         level = v
-        if not isfinite(v):
+        if not abs(v) < MOST_FORCE:
             held = 0.0
             continue
         if q[0]:
@@ -178,7 +180,7 @@ def paparazzi(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, 
         if elapsed < interval:
             continue
         elapsed = 0.0
-        row = row + 1 if wide(f[i]) >= threshold else 0
+        row = row + 1 if threshold <= wide(f[i]) < MOST_FORCE else 0
         if row >= calls:
             row, first = 0, k0 + i + 1
             out[alarms] = k0 + i
@@ -201,7 +203,7 @@ def altos(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: W
         then = t
         before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
         a = v - before
-        if not isfinite(a):
+        if not (a == a and abs(v) < MOST_FORCE):
             continue
         gained += a * dt
         if not gained > 0.0:

@@ -20,13 +20,17 @@ coefficient is a state, until the flight is steady. The scale error of the accel
 goes with the push: b gains the variance σ_k² |Δ(f²)| when the mean specific force f changes.
 
 Airspeed is valid from V = 8 σ_V on, which is 2 V* of the pressures' law (`paper`) and holds for a coasting filter, too.
+
+A filter that has left all bounds has diverged: from there on the pressures alone are filtered, as before the launch.
+After a step of a clock (`uavsim.onboard.stamps`) the filter begins anew in flight, V by the pressures, as soon as the
+clocks of head and accelerometer agree.
 """
 
 from collections import deque
 from math import expm1, inf, log1p, nan, sqrt
 
 from uavsim import airdata
-from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MAX_TEMPERATURE, MIN_TEMPERATURE
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed.energy import GATE, SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
@@ -38,7 +42,18 @@ from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
+from uavsim.onboard.airspeed.spikes import Spikes
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
+from uavsim.onboard.plausible import (
+    FASTEST,
+    LEAST_PRESSURE,
+    LEAST_TEMPERATURE,
+    MOST_FLIGHT_FORCE,
+    MOST_FORCE,
+    MOST_PRESSURE,
+    MOST_TEMPERATURE,
+)
+from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
 ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
 TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
@@ -46,8 +61,11 @@ VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
 PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
 STEADY = 2.0  # s after the recognition, from which on the ports are watched and k is known
-FASTEST = 450.0  # m/s; Mach 1 and more is outside the relation between pressures and airspeed
-THINNEST, THICKEST = 1e3, 2e5  # Pa, beyond the range of any of the sensors
+BEYOND = 450.0  # m/s, far past Mach 1: a filter that is there has diverged
+THINNEST, THICKEST = 1e3, 2e5  # Pa, of the filter's static pressure, alike
+SUDDEN, SUDDEN_SD = 100.0, 15.0  # Pa, and standard deviations: how far a pressure goes at once, and beside that
+STEEP, STROKE = 3e3, 5e4  # Pa/s: 60 m/s and 40 m/s², or a dive at 250 m/s; and in the stroke 80 m/s and 500 m/s²
+MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go
 COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 MODEL = 0.1  # Pa, what the model of a pressure is off by, whatever its sensor: 0.1 ms of the stroke's rise
@@ -89,12 +107,13 @@ class AidedFilter:
     aided = True
     core: type[EnergyFilter] = OnePassFilter
     __slots__ = (
-        "_density", "_folded", "_force", "_gained", "_gas", "_ground", "_gust", "_gust_falls", "_heat", "_lift",
-        "_measured", "_misses", "_noise", "_on_rail", "_patience", "_push", "_push_variance", "_raw_scale", "_rest",
-        "_rows", "_scale_variance", "_settings", "_settled", "_static_age", "_static_seen", "_static_variance",
-        "_steady_from", "_t", "_t_static", "_t_total", "_tare", "_tare_end", "_temperature", "_temperature_share",
-        "_total_age", "_total_seen", "_total_variance", "_turning", "_u", "_w", "_waiting", "_wind", "energy",
-        "flying", "news", "static_watch", "time", "watch",
+        "_apart", "_density", "_either", "_fastest", "_flight_force", "_folded", "_force", "_gained", "_gas", "_ground",
+        "_gust", "_gust_falls", "_heat", "_lift", "_longest", "_measured", "_misses", "_noise", "_on_rail", "_patience",
+        "_push", "_push_variance", "_raw_scale", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_settled",
+        "_stamps", "_static_age", "_static_ends", "_static_last", "_static_seen", "_static_spikes", "_static_variance",
+        "_steady_from", "_steps", "_sudden", "_t", "_tare", "_tare_end", "_temperature", "_temperature_share", "_torn",
+        "_total_age", "_total_ends", "_total_last", "_total_seen", "_total_spikes", "_total_variance", "_turning", "_u",
+        "_usual", "_w", "_waiting", "_wind", "energy", "flying", "news", "static_watch", "time", "watch",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -102,7 +121,9 @@ class AidedFilter:
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
-        self._rest = RestForce(noise.accelerometer_sd)
+        force = settings.aided.flight_force
+        self._flight_force = MOST_FLIGHT_FORCE if force is None else force
+        self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._rows: deque[Row] = deque(maxlen=ROWS)
         self._total_age = 0.5 * noise.total_window + noise.total_lag
         self._static_age = 0.5 * noise.static_window + noise.static_lag
@@ -116,14 +137,25 @@ class AidedFilter:
         self._on_rail = aided.on_rail
         self._temperature_share = 0.5 * noise.temperature_sd
         self._raw_scale = self._waiting.scale
-        self.flying = False
-        self.time = self._t = self._t_total = self._t_static = -inf
+        self._fastest = FASTEST if settings.fastest is None else settings.fastest
+        self._longest = jump(noise.head_rate)
+        self._stamps = Stamps(self._longest)
+        self._total_ends, self._static_ends = Conversions(self._longest), Conversions(self._longest)
+        sd = sqrt(max(self._total_variance, self._static_variance))
+        self._sudden = max(SUDDEN, SUDDEN_SD * sd)
+        self._total_spikes, self._static_spikes = Spikes(), Spikes()
+        self._total_last = self._static_last = nan
+        self._torn = self._either = False
+        self.flying = self._apart = False
+        self._steps, self._read = 0, -inf
+        self.time = self._t = -inf
         self._temperature = self._density = self._gas = self._heat = nan
         self._tare = 0.0
         self._settled, self._patience, self._misses, self._push_variance = False, inf, 0, 0.0
         self._steady_from = inf
         self._static_seen: tuple[float, float, float] | None = None  # Pa, its instant, s, mean of −f_z since, m/s²
         self._total_seen: tuple[float, float] | None = None  # tared, Pa, and NIS
+        self._usual = [0, 0]
         self._begin_watch()
         self.news: list[tuple[float, str, str, str]] = []
         self._u = self._w = 0.0
@@ -138,48 +170,128 @@ class AidedFilter:
 
     def _wait(self, t: float, fx: float, fy: float, fz: float) -> None:
         self._gained.add(t, fx, fy, fz)
-        if not self.flying:
+        if not self.flying and self._gained.newest == t:  # it has been taken
             self._rest.add(t, fx)
 
     def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
         """Take one reading of the head; as `PaperFilter.step`, the pressures being the filter's own at `t`."""
+        if not 0.0 < t - self._read <= self._longest and not self._admit(t):
+            return None
+        self._read = t
+        if self._steps != self._gained.steps:
+            self._steps = self._gained.steps
+            self._lose_time(t)
+        if self._apart and -self._longest <= t - self._gained.newest <= self._longest:
+            self._begin_in_flight(t)
         if self.flying:
-            estimate = self._fly(t, p_total, p_static, temperature, t_total, t_static)
-            energy = self.energy
-            if -FASTEST < energy.v < FASTEST and THINNEST < energy.p < THICKEST:
-                return estimate
-            self.flying = False  # the force is of no flight: from here on by the pressures alone
-            self._total_seen = self._static_seen = None
-            self.news.append((t, "airspeed_fault", "both", "diverged"))
-        self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
-        return self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
+            try:
+                estimate = self._fly(t, p_total, p_static, temperature, t_total, t_static)
+                if estimate is None or self._sound(estimate):
+                    return estimate
+            except (ArithmeticError, ValueError):  # Python's for what is inf or NaN on the aircraft
+                pass
+            self._fall_back(t, "diverged")
+        estimate = self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
+        if estimate is not None:
+            self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
+        return estimate
 
-    def launched(self, t: float) -> None:
-        """Start the energy-rate filter before a launch that has been recognised at `t`, and bring it up to date."""
-        if self.flying or not t > -inf:
-            return
-        start = max(t - self._settings.aided.replay, self._gained.oldest, self._tare_end)
-        start = min(start, t)
-        self.energy = self._begin(start)
+    def _sound(self, estimate: Estimate) -> bool:
+        """Whether the filter is within all bounds, which NaN is not, and no variance of it is below 0."""
+        energy = self.energy
+        if estimate[7] < 0.0 or estimate[8] < 0.0:
+            return False
+        return -BEYOND < energy.v < BEYOND and THINNEST < energy.p < THICKEST and energy.vv > 0.0 and energy.pp > 0.0
+
+    def _fall_back(self, t: float, kind: str) -> None:
+        """From here on go by the pressures alone: the force is of no flight, or of another time."""
+        self.flying = False
+        self._total_seen = self._static_seen = None
+        self._waiting.resume(self._total_last, self._static_last, self._sudden)
+        self._tell_of(t, "airspeed_fault", "both", kind)
+
+    def _tell_of(self, t: float, event: str, channel: str, kind: str = "") -> None:
+        """Put something into the news."""
+        self.news.append((t, event, channel, kind))
+        if len(self.news) > MOST_NEWS:
+            del self.news[0]
+
+    # -- clocks ------------------------------------------------------------------------------------------------------
+
+    def _admit(self, t: float) -> bool:
+        """Whether a reading is taken whose stamp does not follow the last."""
+        if not self._stamps.admit(t, self._read):
+            return False
+        if self._read > -inf:
+            self._lose_time(t)
+            self._rows.clear()
+        self._total_ends.forget()
+        self._static_ends.forget()
+        return True
+
+    def _lose_time(self, t: float) -> None:
+        """After a step of a clock in flight the integral of f_x and the filter's time mean nothing."""
+        if self.flying:
+            self._apart = True
+            self._fall_back(t, "clock")
+
+    def _begin_in_flight(self, t: float) -> None:
+        """Begin anew at `t`, s: V by the next total pressure, both ports believed, climb and bias not known."""
+        aided, before = self._settings.aided, self.energy.p
+        core = self._core(
+            speed_sd=self._settings.wind_sd,
+            rest=(0.0, 0.0),
+            static=(before if THINNEST < before < THICKEST else airdata.STANDARD_PRESSURE, ANYWHERE),
+            difference_sd=sqrt(self._waiting.tare()[1]),
+        )
+        core.bs, core.ss = 0.0, 0.5 * aided.slope_rate**2 * aided.slope_time
+        self.energy, self._wind, self._folded = core, 0.0, (inf, inf, 0.0)
+        for watch, channel in ((self.watch, "total"), (self.static_watch, "static")):
+            if watch.faulty:
+                self._tell_of(t, "airspeed_recovered", channel)
+        self._start(t - OLDEST, -inf, t + STEADY)
+        self._apart = False
+        self._tell_of(t, "airspeed_recovered", "both")
+
+    def _start(self, start: float, patience: float, steady_from: float) -> None:
+        """Fly from an instant on, s; see `PATIENCE` and `STEADY`."""
         self.flying = True
         self.time = self._t = start
         self._u, self._w = self._gained.at(start)
         self._push.forget()
-        self._settled, self._patience, self._push_variance = False, t + PATIENCE, 0.0
-        self._steady_from = t + STEADY
+        self._settled, self._patience, self._push_variance = False, patience, 0.0
+        self._steady_from = steady_from
+        self._misses, self._torn, self._either = 0, False, False
+        self._total_last = self._static_last = nan
         self._begin_watch()
-        self._t_total = self._t_static = -inf
-        for row in self._rows:
-            if row[4] - self._total_age > start or row[5] - self._static_age > start:
-                self._fly(*row)
+        self._total_ends.forget()
+        self._static_ends.forget()
+
+    def launched(self, t: float) -> None:
+        """Start the energy-rate filter before a launch that has been recognised at `t`, and bring it up to date."""
+        if self.flying or not -LATEST < t < LATEST:
+            return
+        self._gained.bound(MOST_FORCE)
+        start = max(t - self._settings.aided.replay, self._gained.oldest, self._tare_end)
+        start = min(start, t)
+        self.energy = self._begin(start)
+        self._apart = False
+        self._start(start, t + PATIENCE, t + STEADY)
+        try:
+            for row in self._rows:
+                if row[4] - self._total_age > start or row[5] - self._static_age > start:
+                    self._fly(*row)
+        except (ArithmeticError, ValueError):  # as in `step`
+            self._fall_back(t, "diverged")
         self._rows.clear()
 
     def _begin_watch(self) -> None:
         """Look at how the sensors repeat themselves on the rail, and begin to watch their ports."""
-        usual = [longest_row(row[i] for row in self._rows) for i in (1, 2)]
-        walk = self._noise.walk
+        if self._rows:
+            self._usual = [longest_row(row[i] for row in self._rows) for i in (1, 2)]
+        usual, walk = self._usual, self._noise.walk
         self.watch = TotalWatch(self._settings.aided, self._total_variance, walk, usual[0])
         self.static_watch = StaticWatch(self._static_variance, walk, usual[1])
         self._lift = GRAVITY
@@ -188,17 +300,19 @@ class AidedFilter:
     def unfolding(self, t: float) -> None:
         """For a while trust the integral of f_x less."""
         aided = self._settings.aided
+        self._gained.bound(self._flight_force)
         self._folded = (t, t + aided.unfolding_time, aided.unfolding_rate**2)
 
     def rearmed(self, t: float) -> None:
         """Go back to waiting: the launch was none."""
-        self.flying = False
+        self.flying = self._apart = False
+        self._waiting.forget_time()
         self._rest.forget()
+        self._gained.bound(MOST_FORCE)
 
     def _begin(self, start: float) -> EnergyFilter:
-        aided, noise = self._settings.aided, self._noise
         static = self._waiting.static.value
-        known = 0.0 < static < inf
+        known = LEAST_PRESSURE <= static <= MOST_PRESSURE
         self._tare, tare_variance = self._waiting.tare()
         warm = self._waiting.temperature
         self._measured = warm > 0.0
@@ -206,23 +320,35 @@ class AidedFilter:
         rest, rest_sd = self._rest.result(start)
         self._folded = (inf, inf, 0.0)
         wind_sd = self._look_at_wind(start, tare_variance, static / self._gas)
-        core = self.core(
+        core = self._core(
             speed_sd=wind_sd,
-            rest_force=rest,
-            rest_sd=rest_sd,
+            rest=(rest, rest_sd),
+            static=(static, AROUND) if known else (airdata.STANDARD_PRESSURE, ANYWHERE),
+            difference_sd=sqrt(tare_variance),
+        )
+        core.v, self._ground = self._wind, core.p
+        return core
+
+    def _core(
+        self, speed_sd: float, rest: tuple[float, float], static: tuple[float, float], difference_sd: float
+    ) -> EnergyFilter:
+        """Make the filter; what f_x reads at rest and the static pressure each with its standard deviation."""
+        aided, noise = self._settings.aided, self._noise
+        return self.core(
+            speed_sd=speed_sd,
+            rest_force=rest[0],
+            rest_sd=rest[1],
             bias_sd=aided.bias_sd,
             bias_time=aided.bias_time,
             slope_rate=aided.slope_rate,
             slope_time=aided.slope_time,
-            static=static if known else airdata.STANDARD_PRESSURE,
-            static_sd=AROUND if known else ANYWHERE,
+            static=static[0],
+            static_sd=static[1],
             static_walk=aided.static_walk,
-            difference_sd=sqrt(tare_variance),
+            difference_sd=difference_sd,
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
         )
-        core.v, self._ground = self._wind, core.p
-        return core
 
     def _look_at_wind(self, start: float, tare_variance: float, density: float) -> float:
         """Find the airspeed on the rail by the pressures there; return its standard deviation, m/s."""
@@ -249,10 +375,10 @@ class AidedFilter:
         if not t > self._t:
             return None
         if self._total_seen is not None or self._static_seen is not None:
-            self.tidy()
-        self._t = t
+            self._judge()
+        before, self._t = self._t, t
         energy = self.energy
-        if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
+        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
             if temperature != self._temperature:
                 self._warm(temperature)
             self._measured = True
@@ -261,21 +387,57 @@ class AidedFilter:
         self._density = energy.p / self._gas
         if self._gust_falls:
             self._gust = gust_density(self._settings.aided, (self._ground - energy.p) / (GRAVITY * self._density))
-        nis_total, nis_static = self._take(p_total, p_static, t_total, t_static)
+        total_read, static_read = (
+            LEAST_PRESSURE <= p_total <= MOST_PRESSURE, LEAST_PRESSURE <= p_static <= MOST_PRESSURE,
+        )  # fmt: skip
+        reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
+        if total_read and not -reach <= p_total - self._total_last <= reach:
+            total_read = self._total_jumps(p_total, reach)
+        if static_read and not -reach <= p_static - self._static_last <= reach:
+            static_read = self._static_jumps(p_static, reach)
+        if total_read:
+            self._total_last = p_total
+        if static_read:
+            self._static_last = p_static
+        end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
+        nis_total, nis_static = self._take(
+            p_total, p_static, end_total, end_static, total_read and end_total == end_total,
+            static_read and end_static == end_static,
+        )  # fmt: skip
         raw = nan
-        if 0.0 < p_total < inf and 0.0 < p_static < inf and temperature > 0.0:  # as `airdata.compressible_airspeed`
+        if total_read and static_read and temperature > 0.0:  # as `airdata.compressible_airspeed`
             excess = (p_total - self._tare - p_static) / p_static
             raw = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess))) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
-    def _take(self, p_total: float, p_static: float, t_total: float, t_static: float) -> tuple[float, float]:
+    def _total_jumps(self, reading: float, reach: float) -> bool:
+        """Whether a sudden total pressure is no spike: it is taken for what it is, and the port is flagged."""
+        if not self._total_spikes.believe(reading, self._total_last, reach):
+            return False
+        self._either = self._total_last == self._total_last
+        if self._watched(self._total_last) and not (self.watch.faulty or self.static_watch.faulty):
+            self.watch.flag("jump", self.energy, self._density, self._gust)
+            self._tell_of(self._t, "airspeed_fault", "total", "jump")
+        return True
+
+    def _watched(self, last: float) -> bool:
+        """Whether the ports are watched and a pressure has been read before."""
+        return self.time > self._steady_from and last == last
+
+    def _static_jumps(self, reading: float, reach: float) -> bool:
+        """Whether a sudden static pressure is no spike; see `_total_jumps`."""
+        if not self._static_spikes.believe(reading, self._static_last, reach):
+            return False
+        self._either = self._static_last == self._static_last
+        if self._watched(self._static_last) and not self.static_watch.faulty:
+            self._flag_static("jump")
+        return True
+
+    def _take(
+        self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
+    ) -> tuple[float, float]:
         """Take what is new of a reading of the head; return the normalised innovations squared."""
         nis_total = nis_static = nan
-        new_total, new_static = t_total > self._t_total, t_static > self._t_static
-        if new_total:
-            self._t_total, new_total = t_total, 0.0 < p_total < inf
-        if new_static:
-            self._t_static, new_static = t_static, 0.0 < p_static < inf
         to, at = t_total - self._total_age, t_static - self._static_age
         if new_total and new_static and self._steady(to, at):
             nis_total, nis_static = self._take_both(p_total, p_static, t_total, to, at)
@@ -348,7 +510,11 @@ class AidedFilter:
         u, w = self._gained.at(to)
         gained = u - self._u
         self._force = gained / dt - self._rest.mean
-        variance = self._gust * (v if v > SLOWEST else SLOWEST) * dt + w - self._w
+        variance = self._gust * (v if v > SLOWEST else SLOWEST) * dt
+        if w > self._w:  # else readings have come late, and that they might be lost has been counted
+            variance = variance + w - self._w
+            if self._gained.torn(w - self._w, dt):
+                self._torn = True
         begin, end, rate = self._folded
         if to > begin and self.time < end:
             variance += rate * (min(to, end) - max(self.time, begin))
@@ -365,7 +531,7 @@ class AidedFilter:
             spread = energy.pp + self._static_variance
             if self.static_watch.coast(at, reading, difference, spread):
                 energy.pp += difference * difference
-                self.news.append((self._t, "airspeed_recovered", "static", ""))
+                self._tell_of(self._t, "airspeed_recovered", "static")
             return nan
         nis = energy.static(reading, self._static_variance, self._density * energy.v * ahead)
         self._misses = 0 if energy.taken else self._misses + 1
@@ -381,7 +547,7 @@ class AidedFilter:
         self.static_watch.flag(kind, self.energy, self._density, self.watch.port.frozen.lost)
         self._misses = 0
         self.watch.port.restart()
-        self.news.append((self._t, "airspeed_fault", "static", kind))
+        self._tell_of(self._t, "airspeed_fault", "static", kind)
 
     def _take_total(self, reading: float, end: float) -> float:
         energy = self.energy
@@ -404,12 +570,26 @@ class AidedFilter:
         if not energy.taken and self.time < self._steady_from:  # so early it is rather the filter that is wrong
             slope = self._density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.vv += (energy.innovation / slope) ** 2
+        if self._either and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
+            self._either = False
+            if energy.v < 0.0:  # of an airspeed and its opposite the pressure is the same
+                energy.restart(-energy.v, energy.vv)
         if self.time > self._steady_from and not self.static_watch.faulty:
             self._total_seen = tared, nis
         return nis
 
     def tidy(self) -> None:
         """Watch the ports by what was read last; the filter still stands where it stood then."""
+        try:
+            self._judge()
+        except (ArithmeticError, ValueError):  # as in `step`
+            self._fall_back(self._t, "diverged")
+
+    def _judge(self) -> None:
+        """Judge the ports; see `tidy`."""
+        if self._torn:  # nobody knows what the force has made of the pressures meanwhile
+            self._torn = False
+            self.watch.pause()
         if self._static_seen is not None:
             reading, at, lift = self._static_seen
             self._static_seen = None
@@ -435,7 +615,7 @@ class AidedFilter:
             return
         elif kind != "frozen" or not (self.static_watch.doubtful and self.watch.port.unsure):
             self.watch.flag(kind, self.energy, self._density, self._gust)
-            self.news.append((self._t, "airspeed_fault", "total", kind))
+            self._tell_of(self._t, "airspeed_fault", "total", kind)
 
     def _coast(self, end: float, reading: float, tared: float, variance: float) -> None:
         """Compare a flagged port with the coasting filter; take it back when they have agreed for long enough."""
@@ -447,7 +627,7 @@ class AidedFilter:
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
         if self.watch.coast(reading, tared, difference, spread, end):
             energy.vv += difference * difference
-            self.news.append((self._t, "airspeed_recovered", "total", ""))
+            self._tell_of(self._t, "airspeed_recovered", "total")
 
     def _settle(self, reading: float) -> bool:
         """Whether the push has brought V far enough from 0 for a total pressure; if it never does, take V from that."""
@@ -484,9 +664,12 @@ class AidedFilter:
         """Predict to the time of the reading and say what is known."""
         energy = self.energy
         dt = t - self.time
-        if dt < 0.0:  # noqa: PLR1730 - a call of max costs a tenth of a microsecond
-            dt = 0.0
-        u, w = self._gained.at(t)
+        if dt > 0.0:
+            u, w = self._gained.at(t)
+            if w < self._w:  # noqa: PLR1730 - as in `_go`, and a call of max costs a tenth of a microsecond
+                w = self._w
+        else:
+            dt, u, w = 0.0, self._u, self._w
         gained = u - self._u
         drift = energy.b + energy.s
         speed = energy.v + gained - dt * drift
@@ -503,7 +686,7 @@ class AidedFilter:
         y = 1.0 + speed * speed / self._heat
         total = static * y * y * y * sqrt(y)
         valid = (
-            speed >= VALID * sd
+            VALID * sd <= speed <= self._fastest
             and self._measured
             and (sd < COASTED or not self.watch.faulty)
             and not self.static_watch.faulty  # without it V and the climb are hardly told apart

@@ -38,6 +38,10 @@ class RampChannel:
 
     def __init__(self, q: float, r: float) -> None:
         self._q, self._r = q, r
+        self.restart()
+
+    def restart(self) -> None:
+        """Know nothing."""
         self._rate = self._cross = self._rate_variance = 0.0
         self.value, self.variance, self.nis = nan, inf, nan
 

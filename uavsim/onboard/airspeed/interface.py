@@ -4,6 +4,9 @@ A reading of the head is (t, p_total, p_static, temperature, t_total, t_static):
 the ends of the two conversions that it carries, s. A reading of specific force is (t, f_x, f_y, f_z), m/s², body axes.
 An estimator that goes by the pressures alone takes readings of specific force, too, and leaves them aside, so that one
 flight computer serves all kinds.
+
+Whatever the readings, a step returns. A value outside the bounds of `uavsim.onboard.plausible` is a missing one, and no
+estimate outside them is valid; which readings are left out for their time stamps is said in `uavsim.onboard.stamps`.
 """
 
 from collections.abc import Callable
@@ -30,7 +33,7 @@ class Estimator(Protocol):
     def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
-        """Take one reading of the head and say what is known after it; None if it is not newer than the last."""
+        """Take one reading of the head and say what is known after it; None if it is left out for its stamp."""
 
     @property
     def accelerometer(self) -> Feel:
@@ -84,6 +87,8 @@ class NoiseModel:
         Its output rate, Hz.
     accelerometer_lag : float
         Age of a reading of specific force at its time stamp, s.
+    head_rate : float
+        Readings of the head a second, Hz: which of their time stamps are believed.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
@@ -102,3 +107,4 @@ class NoiseModel:
     accelerometer_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.005
     accelerometer_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 1000.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
+    head_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 100.0

@@ -35,6 +35,10 @@ class JumpChannel:
 
     def __init__(self, r: float) -> None:
         self._r, self._q = r, GROWTH * r
+        self.restart()
+
+    def restart(self) -> None:
+        """Know nothing."""
         self._up = self._down = 0.0
         self.value, self.variance, self.nis = nan, inf, nan
 

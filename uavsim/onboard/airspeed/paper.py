@@ -33,11 +33,12 @@ from collections.abc import Callable
 from math import inf, isnan, nan, sqrt
 
 from uavsim import airdata
-from uavsim.airdata import MAX_TEMPERATURE, MIN_TEMPERATURE
 from uavsim.onboard.airspeed.interface import Estimate, NoiseModel
 from uavsim.onboard.airspeed.random_walk import Channel, RandomWalk, process_noise
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.tare import Tare
+from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.stamps import Conversions, Stamps, jump
 
 FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the clipped root
 VALID = 2.0  # V*; from here on the airspeed is called valid
@@ -58,28 +59,32 @@ class PaperFilter:
 
     Notes
     -----
-    A reading that is NaN, infinite or ≤ 0 Pa (for the thermometer: outside 150–400 K) is missing. A missing pressure
-    lets that channel's variance grow; a missing temperature leaves the last one in use. Without a reading in its
-    window the tare is 0.
+    A reading that is NaN or implausible is missing. A missing pressure lets that channel's variance grow; a missing
+    temperature leaves the last one in use. Without a reading in its window the tare is 0. After a step of the clock
+    both filters begin anew. Filtered pressures that are implausible have no airspeed, and an airspeed above
+    `EstimatorSettings.fastest` is not valid.
     """
 
     aided = False
     __slots__ = (
         "_compressible",
+        "_cover",
+        "_fastest",
         "_heating",
         "_relation",
         "_scale",
+        "_stamps",
         "_star",
         "_static",
+        "_static_ends",
         "_t",
-        "_t_static",
-        "_t_total",
         "_tare",
         "_tare_variance",
         "_taring",
         "_temperature",
         "_temperature_share",
         "_total",
+        "_total_ends",
         "_wind_sd",
     )
 
@@ -100,10 +105,14 @@ class PaperFilter:
         self._heating = 0.5 * (airdata.GAMMA - 1.0) / (airdata.GAMMA * airdata.GAS_CONSTANT_DRY_AIR * scale_squared)
         self._temperature_share = 0.5 * noise.temperature_sd
         self._wind_sd = settings.wind_sd
-        self._t = self._t_total = self._t_static = -inf
+        self._fastest = FASTEST if settings.fastest is None else settings.fastest
+        self._t = -inf
+        longest = jump(noise.head_rate)
+        self._stamps, self._total_ends, self._static_ends = Stamps(longest), Conversions(longest), Conversions(longest)
         self._temperature = nan
         self._tare = self._tare_variance = 0.0
         self._taring = None if tare_window is None else Tare(*tare_window, noise)
+        self._cover: Tare | None = None  # that a step of the clock has perhaps ended before its time
 
     @staticmethod
     def _channels(settings: EstimatorSettings, noise: NoiseModel) -> tuple[Channel, Channel]:
@@ -125,49 +134,60 @@ class PaperFilter:
             Of the air, K.
         t_total, t_static : float
             End of the conversions that the pressures come from, s. One that is not later than the channel's last
-            brings no information and is not taken again.
+            brings no information and is not taken again; see `uavsim.onboard.stamps`.
 
         Returns
         -------
         tuple or None
             t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid, nis_total, nis_static, as `Estimate`;
             airspeed_raw is that of this reading alone, NaN where it lacks something; the pressures are the filtered
-            ones, p_total tared; the last two are NaN where a channel has no new conversion. None if t is NaN or not
-            later than the last.
+            ones, p_total tared; the last two are NaN where a channel has no new conversion. None if the reading is
+            left out for its time stamp.
         """
-        if not t > self._t:
-            return None
+        if not 0.0 < t - self._t <= self._stamps.longest:
+            if not self._stamps.admit(t, self._t):
+                return None
+            if self._t > -inf:
+                self._begin_anew(t)
         self._t = t
-        new_total, new_static = t_total > self._t_total, t_static > self._t_static
+        end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
+        new_total, new_static = end_total == end_total, end_static == end_static  # not NaN
+        if not LEAST_PRESSURE <= p_total <= MOST_PRESSURE:
+            p_total = nan
+        if not LEAST_PRESSURE <= p_static <= MOST_PRESSURE:
+            p_static = nan
         if new_total:
-            self._t_total = t_total
             self._total.add(p_total)
         if new_static:
-            self._t_static = t_static
             self._static.add(p_static)
-        if MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE:
+        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
             self._temperature = temperature
         else:
             temperature = nan
-        measured = 0.0 < p_total < inf and 0.0 < p_static < inf
-        covered = False
-        if self._taring is not None:
-            covered = t <= self._taring.end
-            if covered:
-                self._taring.add(t, p_total - p_static if measured else nan, new_total, new_static)
-            else:
-                self._tare, self._tare_variance = self._taring.result()
-                self._taring = None
+        measured = p_total == p_total and p_static == p_static
+        covered = self._taring is not None and self._tared(t, p_total - p_static, new_total, new_static)
 
         tare = self._tare
         raw = self._scale * self._relation(p_total - tare, p_static, temperature) if measured else nan
         total, static = self._total.value - tare, self._static.value
-        speed = self._scale * self._relation(total, static, self._temperature)
+        known = LEAST_PRESSURE <= static <= MOST_PRESSURE
+        speed = self._scale * self._relation(total, static, self._temperature) if known else nan
         nis_total, nis_static = self._total.nis if new_total else nan, self._static.nis if new_static else nan
         if covered or isnan(speed):
             return t, 0.0, self._wind_sd, raw, total, static, False, nis_total, nis_static
         sd, valid = self._spread(speed, total / static, static)
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static
+
+    def _tared(self, t: float, difference: float, new_total: bool, new_static: bool) -> bool:
+        """Take the difference of a reading into the tare, Pa, or end it; return whether the head is covered."""
+        taring = self._taring
+        assert taring is not None
+        if t <= taring.end:
+            taring.add(t, difference, new_total, new_static)
+            return True
+        self._tare, self._tare_variance = taring.result()
+        self._taring = None
+        return False
 
     def _spread(self, speed: float, ratio: float, static: float) -> tuple[float, bool]:
         """Return the airspeed's standard deviation and whether it is valid, by the law above."""
@@ -184,7 +204,34 @@ class PaperFilter:
         sd = sqrt(pressure_share * pressure_share + temperature_share * temperature_share)
         if speed < star and sd > self._wind_sd:
             sd = self._wind_sd
-        return sd, speed >= VALID * star
+        return sd, VALID * star <= speed <= self._fastest
+
+    def restart(self) -> None:
+        """Know nothing of the pressures, but their tare."""
+        self.forget_time()
+        self._total.restart()
+        self._static.restart()
+
+    def resume(self, total: float, static: float, reach: float) -> None:
+        """Go on after a pause in which others have read the pressures: anew, unless both are within `reach`, Pa."""
+        if abs(total - self._total.value) <= reach and abs(static - self._static.value) <= reach:
+            self.forget_time()
+        else:
+            self.restart()
+
+    def forget_time(self) -> None:
+        """Take the next reading whatever its time stamp, if that is one."""
+        self._t = -inf
+        self._total_ends.forget()
+        self._static_ends.forget()
+
+    def _begin_anew(self, t: float) -> None:
+        """After a step of the clock the pressures may be any."""
+        self.restart()
+        if self._taring is not None:
+            self._cover = self._taring
+        elif self._cover is not None and t <= self._cover.end:
+            self._taring = self._cover
 
     @property
     def static(self) -> Channel:

@@ -63,6 +63,9 @@ class Channel(Protocol):
     def add(self, reading: float) -> None:
         """Take the reading of one conversion, Pa; one that is no pressure only lets the variance grow."""
 
+    def restart(self) -> None:
+        """Know nothing: the next reading is the first."""
+
 
 class RandomWalk:
     """Scalar Kalman filter of a random walk in white noise, started by its first reading.
@@ -77,6 +80,10 @@ class RandomWalk:
 
     def __init__(self, q: float, r: float) -> None:
         self._q, self._r = q, r
+        self.restart()
+
+    def restart(self) -> None:
+        """Know nothing."""
         self.value, self.variance, self.nis = nan, inf, nan
 
     def add(self, reading: float) -> None:

@@ -5,6 +5,10 @@ Means over blocks of half a second; the one before the last is used, which holds
 
 from math import inf, sqrt
 
+from uavsim.onboard.plausible import MOST_FORCE
+
+NOISY = 10.0  # standard deviations of a reading, so far it is plausible at rest where it shakes heavily
+
 BLOCK = 0.5  # s
 WANDER = 0.02  # m/s², what a mean is off by beside its noise: the bias since then
 UNKNOWN = 5.0  # m/s², standard deviation while nothing has been read: that of a rail of up to 30°
@@ -17,6 +21,8 @@ class RestForce:
     ----------
     sd : float
         Noise of one reading, m/s².
+    most : float
+        Greatest force that is plausible at rest, m/s².
 
     Attributes
     ----------
@@ -24,10 +30,10 @@ class RestForce:
         The last answer, m/s².
     """
 
-    __slots__ = ("_count", "_done", "_last", "_sd", "_start", "_sum", "mean")
+    __slots__ = ("_count", "_done", "_last", "_most", "_sd", "_start", "_sum", "mean")
 
-    def __init__(self, sd: float) -> None:
-        self._sd = sd
+    def __init__(self, sd: float, most: float = MOST_FORCE) -> None:
+        self._sd, self._most = sd, max(most, NOISY * sd)
         self.mean = 0.0
         self.forget()
 
@@ -37,10 +43,10 @@ class RestForce:
         self._last = self._done = (0.0, 0)  # mean, readings
 
     def add(self, t: float, f: float) -> None:
-        """Take a reading; one that is no number is passed over."""
-        if not (-inf < f < inf and -inf < t < inf):
+        """Take a reading whose time stamp is believed; one that is NaN or implausible is passed over."""
+        if not -self._most < f < self._most:
             return
-        if t - self._start >= BLOCK:
+        if not 0.0 <= t - self._start < BLOCK:  # a step of the clock ends it, too
             if self._count:
                 self._done, self._last = self._last, (self._sum / self._count, self._count)
             self._start, self._sum, self._count = t, 0.0, 0

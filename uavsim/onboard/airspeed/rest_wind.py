@@ -13,10 +13,14 @@ A visible wind is a headwind until the push tells otherwise.
 from collections.abc import Iterable
 from math import inf, sqrt
 
+from uavsim.onboard.airspeed.majority import Majority
+from uavsim.onboard.plausible import LEAST_PRESSURE, MOST_PRESSURE
+
 VISIBLE = 2.0  # V*
 HIDDEN = 0.632  # V*, rms of the clipped root at rest
 OPENED = 0.02  # s after the tare in which the last covered conversion leaves the head
 FEWEST = 3  # conversions
+STRONGEST = 60.0  # m/s; nobody launches in a hurricane: a port is broken, and nothing is known of the wind
 
 Row = tuple[float, float, float, float, float, float]
 
@@ -39,19 +43,21 @@ def wind_at_rest(
     density : float
         Of the air, kg/m³.
     """
-    total, count, last = 0.0, 0, -inf
+    differences, last = Majority(each), -inf
     for _, p_total, p_static, _, t_total, t_static in rows:
         if not (start + OPENED < t_total <= end and start + OPENED < t_static and t_total > last):
             continue
         last = t_total
-        if 0.0 < p_total < inf and 0.0 < p_static < inf:
-            total += p_total - p_static
-            count += 1
+        if LEAST_PRESSURE <= p_total <= MOST_PRESSURE and LEAST_PRESSURE <= p_static <= MOST_PRESSURE:
+            differences.add(p_total - p_static)
+    total, count = differences.most.sum, differences.most.count
     if count < FEWEST or not density > 0.0:
         return 0.0, inf
     difference, sigma = total / count - tare, sqrt(each / count + variance)
     square = 2.0 * sigma / density
     wind = sqrt(2.0 * difference / density) if difference > 0.0 else 0.0
+    if wind > STRONGEST:
+        return 0.0, inf
     if wind * wind >= VISIBLE * VISIBLE * square:
         return wind, 0.5 * square / wind
     return 0.0, sqrt(wind * wind + HIDDEN * HIDDEN * square)

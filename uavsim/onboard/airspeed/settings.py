@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from annotated_types import Interval
 
 from uavsim import airdata
+from uavsim.onboard.plausible import FASTEST, MOST_FORCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,9 @@ class AidedSettings:
         How long after the wings' command they push the accelerometer about, s.
     unfolding_rate : float
         How far the integral of f_x wanders from the airspeed meanwhile, (m/s)/√s.
+    flight_force : float or None
+        The greatest specific force along an axis with the wings out, m/s²: a reading beyond it is a missing one. None:
+        6 g, on a rig what an accelerometer reads at all.
     replay : float
         How long before its recognition a launch is replayed from, s; it has to begin on the rail.
     """
@@ -59,6 +63,7 @@ class AidedSettings:
     on_rail: Annotated[float, Interval(gt=0.0, le=500.0)] = 20.0
     unfolding_time: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.35
     unfolding_rate: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
+    flight_force: Annotated[float, Interval(gt=0.0, le=MOST_FORCE)] | None = None
     replay: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.3
 
 
@@ -85,6 +90,9 @@ class EstimatorSettings:
         Mole fraction of water vapour in the air.
     calibration : float
         K, which multiplies the airspeed.
+    fastest : float or None
+        The greatest airspeed that the aircraft can have, m/s: no estimate above it is valid. None: four times the
+        airspeed that its flight computer holds, on a rig that of sound.
     aided : group
         Of the aided filter.
     """
@@ -98,4 +106,5 @@ class EstimatorSettings:
     wind_sd: Annotated[float, Interval(gt=0.0, le=100.0)] = 3.0
     vapour_fraction: Annotated[float, Interval(ge=0.0, le=0.2)] = 0.0
     calibration: Annotated[float, Interval(gt=0.0, le=10.0)] = 1.0
+    fastest: Annotated[float, Interval(gt=0.0, le=FASTEST)] | None = None
     aided: AidedSettings = field(default_factory=AidedSettings)

@@ -7,15 +7,22 @@ brought into it, which grows with time alone. A gap in the readings, five period
 newest one count with the mean of the readings beside them and with an unknown acceleration of 5 m/s² standard deviation
 throughout.
 
-Fixed memory: the readings of the last `SIZE` periods and the last `GAPS` gaps.
+After a step of the clock (`uavsim.onboard.stamps`) nothing from before can be asked for: the ring begins anew, and u
+goes on.
+
+Fixed memory: the readings of the last `SIZE` periods and the last `GAPS` gaps; of older ones the variance stays.
 """
 
 from collections import deque
 from math import inf, nan
 
+from uavsim.onboard.plausible import MOST_FORCE
+from uavsim.onboard.stamps import Stamps, jump
+
 SIZE = 1024  # readings; at 1 kHz a second
 GAPS = 16  # that are remembered; more than that in a second is no accelerometer
 GAP = 5.0  # periods
+NOISY = 10.0  # standard deviations of a reading, so far a force of flight is plausible where it shakes heavily
 GAP_SD = 5.0  # m/s², what an acceleration that nobody has read may be: that of a strong pull-up in flight
 
 
@@ -32,21 +39,30 @@ class SpeedGained:
         How many are kept.
     lag : float
         Age of a reading at its time stamp, s.
+
+    Attributes
+    ----------
+    newest : float
+        Time stamp of the last reading taken, s; -inf before.
+    steps : int
+        How many steps the clock has taken.
     """
 
     __slots__ = (
-        "_f", "_first", "_gap", "_gaps", "_head", "_lag", "_lift", "_lifts", "_newest", "_rate", "_size", "_sum", "_t",
-        "_u", "_white",
+        "_f", "_first", "_gap", "_gaps", "_head", "_lag", "_lift", "_lifts", "_most", "_most_lift", "_old", "_rate",
+        "_shake", "_size", "_stamps", "_sum", "_t", "_u", "_white", "newest", "steps",
     )  # fmt: skip
 
     def __init__(self, sd: float, rate: float, size: int = SIZE, lag: float = 0.0) -> None:
         self._rate, self._size, self._lag = rate, size, lag
         self._gap = GAP / rate
+        self._shake, self._most, self._most_lift = NOISY * sd, MOST_FORCE, MOST_FORCE
         self._white = sd * sd / rate
         self._t, self._u = [-inf] * size, [0.0] * size  # time stamps
         self._gaps: deque[tuple[float, float, float]] = deque(maxlen=GAPS)  # begin, end, variance
         self._head, self._sum, self._f = -1, 0.0, 0.0
-        self._first, self._newest = inf, -inf
+        self._first, self.newest = inf, -inf
+        self._old, self.steps, self._stamps = 0.0, 0, Stamps(jump(rate))
         self._lift, self._lifts = 0.0, 0
 
     @property
@@ -56,38 +72,59 @@ class SpeedGained:
         return (oldest if oldest > -inf else self._first) - self._lag
 
     def add(self, t: float, fx: float, _fy: float = 0.0, fz: float = 0.0) -> None:
-        """Take a reading; one that is no number, or not newer than the last, is passed over."""
-        elapsed = t - self._newest
-        if not (0.0 < elapsed <= self._gap and -inf < fx < inf):
-            if not (elapsed > 0.0 and -inf < t < inf and -inf < fx < inf):
+        """Take a reading; one that is NaN or implausible, or left out for its time stamp, is passed over."""
+        elapsed = t - self.newest
+        if not (0.0 < elapsed <= self._gap and -self._most < fx < self._most):
+            if not (-self._most < fx < self._most and self._stamps.admit(t, self.newest)):
                 return
-            if elapsed < inf:
-                self._gaps.append((self._newest, t, (GAP_SD * elapsed) ** 2))
-            else:
-                self._first, self._f, elapsed = t, fx, 0.0
+            elapsed = self._after_a_gap(t, fx)
         u = self._sum = self._sum + 0.5 * (self._f + fx) * elapsed
-        self._f, self._newest = fx, t
+        self._f, self.newest = fx, t
         self._lift -= fz
         self._lifts += 1
         head = self._head = (self._head + 1) % self._size
         self._t[head], self._u[head] = t, u
 
+    def _after_a_gap(self, t: float, fx: float) -> float:
+        """Note what no reading tells of the time since the last; return that time, s: 0 after a step of the clock."""
+        newest, gaps = self.newest, self._gaps
+        elapsed = t - newest
+        if 0.0 < elapsed <= self._stamps.longest:
+            if len(gaps) == GAPS:
+                self._old += gaps[0][2]
+            gaps.append((newest, t, (GAP_SD * elapsed) ** 2))
+            return elapsed
+        if newest > -inf:
+            self.steps += 1
+            self._t, self._head, self._old = [-inf] * self._size, -1, 0.0
+            gaps.clear()
+        self._first, self._f = t, fx
+        return 0.0
+
+    def bound(self, most: float) -> None:
+        """Be told the greatest plausible force, m/s²; in flight it is less than that of a launch."""
+        self._most, self._most_lift = max(most, self._shake), most
+
+    def torn(self, variance: float, time: float) -> bool:
+        """Whether w has grown by so much, m²/s², in a time, s, that readings must have been missing."""
+        return variance > 4.0 * self._white * time + 0.25 * (GAP_SD * self._gap) ** 2
+
     def lift(self) -> float:
-        """Return the mean of −f_z since it was last asked for, m/s²; NaN without a reading."""
+        """Return the mean of −f_z since it was last asked for, m/s²; NaN without one that is plausible."""
         lift, lifts = self._lift, self._lifts
         self._lift, self._lifts = 0.0, 0
-        return lift / lifts if lifts else nan
+        return lift / lifts if lifts and -self._most_lift < lift / lifts < self._most_lift else nan
 
     def at(self, t: float) -> tuple[float, float]:
         """Return u, m/s, and w, m²/s², at a time; before the oldest reading those of the oldest."""
         t += self._lag
-        beyond = t - self._newest
+        beyond = t - self.newest
         if beyond >= 0.0:
             if beyond <= self._gap:
                 return self._sum + self._f * beyond, self._variance(t)
             if beyond == inf:
                 return 0.0, 0.0
-            return self._sum + self._f * self._gap, self._variance(self._newest) + (GAP_SD * beyond) ** 2
+            return self._sum + self._f * self._gap, self._variance(self.newest) + (GAP_SD * beyond) ** 2
         times, head = self._t, self._head
         last = self._size - 1
         back = int(-beyond * self._rate)  # a guess, right if no reading is missing
@@ -108,7 +145,7 @@ class SpeedGained:
 
     def _variance(self, t: float) -> float:
         """White noise until t, and what gaps have left."""
-        variance = self._white * (t - self._first)
+        variance = self._white * (t - self._first) + self._old
         for begin, end, unread in self._gaps:
             if t > begin:
                 variance += unread if t >= end else unread * (t - begin) / (end - begin)

@@ -3,30 +3,28 @@
 from math import inf
 
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.majority import Majority
 
 
 class Tare:
-    """Mean of p_t − p_s over the readings with start < t ≤ end, and what the noise leaves of its variance."""
+    """Mean of p_t − p_s over most of the readings with start < t ≤ end, and what the noise leaves of its variance."""
 
-    __slots__ = ("_count", "_new_static", "_new_total", "_start", "_static_variance", "_sum", "_total_variance", "end")
+    __slots__ = ("_differences", "_start", "_static_variance", "_total_variance", "end")
 
     def __init__(self, start: float, end: float, noise: NoiseModel) -> None:
         self._start, self.end = start, end
         self._total_variance, self._static_variance = noise.total_sd**2, noise.static_sd**2
-        self._sum = 0.0
-        self._count = self._new_total = self._new_static = 0
+        self._differences = Majority(self._total_variance + self._static_variance)
 
     def add(self, t: float, difference: float, new_total: bool, new_static: bool) -> None:
         """Take one reading; a conversion that is read twice weighs twice, but brings its noise only once."""
         if self._start < t <= self.end and -inf < difference < inf:
-            self._sum += difference
-            self._count += 1
-            self._new_total += new_total
-            self._new_static += new_static
+            self._differences.add(difference, new_total, new_static)
 
     def result(self) -> tuple[float, float]:
         """Return the mean, Pa, and its variance, Pa²; zeros if nothing was read."""
-        if not self._count:
+        found = self._differences.most
+        if not found.count:
             return 0.0, 0.0
-        variance = self._total_variance / max(1, self._new_total) + self._static_variance / max(1, self._new_static)
-        return self._sum / self._count, variance
+        variance = self._total_variance / max(1, found.new_total) + self._static_variance / max(1, found.new_static)
+        return found.sum / found.count, variance

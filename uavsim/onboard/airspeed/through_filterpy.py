@@ -43,6 +43,9 @@ class _FilterpyChannel:
         self._q = np.zeros((2, 2))
         self._q[index, index] = q
         self._r = np.array([[r]])
+        self.restart()
+
+    def restart(self) -> None:
         self.value, self.variance, self.nis = nan, inf, nan
 
     def add(self, reading: float) -> None:

@@ -152,6 +152,10 @@ class TotalWatch:
         self._last = v
         return away
 
+    def pause(self) -> None:
+        """Let the tests begin anew with the next reading."""
+        self._t = -inf
+
     def jump(self, t: float, variance: float) -> None:
         """Be told by how much the push has widened b at `t`, s: its variance, (m/s²)², which b forgets in its time."""
         self._jumped, self._jumped_at = self._bias_variance(t) - self._bias_sd**2 + variance, t
@@ -165,11 +169,15 @@ class TotalWatch:
     def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
         """Flag the port, and put the filter to where it would be without what it took since."""
         test = self.port.frozen
-        if kind != "frozen":  # it has been wrong for a while: to before that
+        if kind == "jump":  # nothing has been taken of it
+            self._t0, self._u0, self._v, self._vv, self._p = self._t, self._u, energy.v, energy.vv, energy.p
+            self._bias, self._bb = test.lost, test.lost_variance
+        elif kind != "frozen":  # it has been wrong for a while: to before that
             before = self._sound if kind == "leak" else self._before[0]
             if before[0] > -inf:
                 self._t0, self._u0, self._v, self._vv, self._p, self._bias, self._bb = before
-        since, slope = self._t - self._t0, density * self._v
+        speed = max(self._v, 1.0)
+        since, slope = self._t - self._t0, density * speed
         if kind == "frozen":
             self.port.back.flag(self._t, test.held, test.held_variance)
         else:
@@ -177,7 +185,7 @@ class TotalWatch:
         self.faulty, self._astray = True, kind in ("drift", "leak")
         energy.v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
         bb = min(self._bb, self._bias_sd * self._bias_sd)
-        energy.vv = self._vv + gust * self._v * since + bb * since * since + UNSEEN * UNSEEN
+        energy.vv = self._vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN
         energy.vv += energy.pp / (slope * slope)
         energy.b, energy.bb = self._bias, bb
         energy.vb = -bb * since

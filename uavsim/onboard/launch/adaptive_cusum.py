@@ -25,6 +25,7 @@ from math import inf, isfinite
 
 from uavsim.onboard.launch.axis import GRAVITY, OneAxis
 from uavsim.onboard.launch.detector import GAP_PERIODS, ROUNDING, Axis, require
+from uavsim.onboard.plausible import MOST_FORCE
 
 
 class AdaptiveCusum(OneAxis):
@@ -65,8 +66,8 @@ class AdaptiveCusum(OneAxis):
 
     Notes
     -----
-    A NaN force takes off as much as no force does, is as rough as d_max and leaves the mean alone. A sample after a gap
-    counts for three nominal periods; S, m and r are kept.
+    A force that is NaN or implausible takes off as much as no force does, is as rough as d_max and leaves the mean
+    alone. A sample after a gap counts for three nominal periods; S, m and r are kept.
 
     Examples
     --------
@@ -134,11 +135,11 @@ class AdaptiveCusum(OneAxis):
             self._mean += away * weight if weight < 1.0 else away
             size = away if away > 0.0 else -away
         else:
-            self._hurry(away, weight)
+            self._hurry(f, away, weight)
         self.roughness += (size - self.roughness) * (dt * self._forget)
         excess = f - self._reference
         if excess > self._rise:
-            excess = self._rise
+            excess = self._rise if f < MOST_FORCE else self._fall
         elif not excess > self._fall:  # NaN too
             excess = self._fall
         total = self.sum + excess * dt
@@ -150,10 +151,12 @@ class AdaptiveCusum(OneAxis):
         self.triggered = False
         return False
 
-    def _hurry(self, away: float, weight: float) -> None:
-        """Let the mean follow a force that is far from it, as fast as it may; a NaN leaves it alone."""
+    def _hurry(self, f: float, away: float, weight: float) -> None:
+        """Let the mean follow a force that is far from it, as fast as it may; one that is none leaves it alone."""
+        if not -MOST_FORCE < f < MOST_FORCE:
+            return
         step = self._most if weight >= 1.0 else self._most * weight
         if away > 0.0:
             self._mean += step
-        elif away < 0.0:
+        else:
             self._mean -= step

@@ -1,14 +1,15 @@
 """What detectors of one signed axis share: which force they look at, the clock, and recognising once.
 
-A sample stands for the time since the last, dt, the first for one nominal period. A time that is NaN, infinite or not
-later than the last is ignored. A gap is a dt above `GAP_PERIODS` nominal periods; the sample after it stands for no
-more than those.
+A sample stands for the time since the last, dt, the first for one nominal period. A gap is a dt above `GAP_PERIODS`
+nominal periods; the sample after it stands for no more than those, and so does the one that shows that the clock has
+taken a step (`uavsim.onboard.stamps`, where it is said which samples are left out for their times).
 """
 
 from math import inf, isfinite, nan
 from typing import get_args
 
 from uavsim.onboard.launch.detector import GAP_PERIODS, ROUNDING, Axis, periods, require
+from uavsim.onboard.stamps import Stamps, jump
 
 GRAVITY = 9.80665  # m/s², ISO 80000-3
 
@@ -41,6 +42,7 @@ class OneAxis:
         "_period",
         "_recognised",
         "_sign",
+        "_stamps",
         "_t",
         "count",
         "level",
@@ -53,6 +55,7 @@ class OneAxis:
         require(axis in get_args(Axis), f"axis must be one of {', '.join(get_args(Axis))}")
         self._period = 1.0 / rate
         self._longest = GAP_PERIODS * ROUNDING / rate
+        self._stamps = Stamps(jump(rate))
         self._forward = axis == "+x"
         self._index, self._sign = "xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0
         self.reset()
@@ -78,10 +81,10 @@ class OneAxis:
         dt = t - self._t
         late = False
         if not 0.0 < dt <= self._longest:
-            if dt <= 0.0 or not isfinite(t):
+            if not self._stamps.admit(t, self._t):
                 return False
-            late = dt > self._longest
-            dt = GAP_PERIODS * self._period if late else self._period  # else the first
+            late = dt == dt  # else the first
+            dt = GAP_PERIODS * self._period if late else self._period
         self._t = t
         if self._recognised:
             return False
@@ -96,7 +99,10 @@ class OneAxis:
         raise NotImplementedError
 
     def _take(self, f: float, dt: float, late: bool) -> bool:
-        """Take the force, m/s² (NaN: unknown), of a sample that stands for dt, s; `late`: after a gap."""
+        """Take the force, m/s², of a sample that stands for dt, s; `late`: after a gap or a step of the clock.
+
+        One that is NaN or implausible does not exceed.
+        """
         raise NotImplementedError
 
 
@@ -122,7 +128,7 @@ class Counting(OneAxis):
         return any(self._count(f) for _ in range(periods(dt, self._period) - 1))
 
     def _count(self, f: float) -> bool:
-        """Count a sample of the force f, m/s² (NaN: unknown); True if it recognises."""
+        """Count a sample of the force f, m/s², which may be NaN or implausible; True if it recognises."""
         raise NotImplementedError
 
 

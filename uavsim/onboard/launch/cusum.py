@@ -13,6 +13,7 @@ from math import isfinite
 
 from uavsim.onboard.launch.axis import GRAVITY, OneAxis
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+from uavsim.onboard.plausible import MOST_FORCE
 
 
 class Cusum(OneAxis):
@@ -47,7 +48,8 @@ class Cusum(OneAxis):
 
     Notes
     -----
-    A NaN force takes off as much as no force does. A sample after a gap counts for three nominal periods; S is kept.
+    A force that is NaN or implausible takes off as much as no force does. A sample after a gap counts for three nominal
+    periods; S is kept.
 
     Examples
     --------
@@ -81,7 +83,7 @@ class Cusum(OneAxis):
     def _take(self, f: float, dt: float, late: bool) -> bool:
         excess = f - self._reference
         if excess > self._rise:
-            excess = self._rise
+            excess = self._rise if f < MOST_FORCE else self._fall
         elif not excess > self._fall:  # NaN too
             excess = self._fall
         total = self.sum + excess * dt

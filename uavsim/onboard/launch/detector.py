@@ -12,8 +12,8 @@ what it reads. So a lost sample costs neither time nor a decision. No sample cou
 | the first | counts for one nominal period |
 | dt up to `GAP_PERIODS` | counts for dt; in windows round(dt·rate) times, at least once |
 | dt above that, a gap | windows, holds and rows begin anew with it, counted once; `Cusum` adds `GAP_PERIODS` |
-| not later than the last, or its time NaN or infinite | ignored |
-| its force NaN | does not exceed; its time counts |
+| its time does not follow the last (`uavsim.onboard.stamps`) | ignored, or as after a gap if the clock took a step |
+| its force NaN or implausible (`uavsim.onboard.plausible`) | does not exceed; its time counts |
 """
 
 from typing import Literal, Protocol

@@ -12,10 +12,11 @@ are gates on attitude, heading and satellite speed, the filters of their estimat
 anew. Sources: the public firmware of each; ArduPilot's level is what its manual gives for throws and bungees.
 """
 
-from math import cos, inf, isfinite, nan, pi, sin, sqrt
+from math import cos, isfinite, nan, pi, sin, sqrt
 
 from uavsim.onboard.launch.axis import GRAVITY, OneAxis
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+from uavsim.onboard.plausible import MOST_FORCE
 
 BLOCK = 0.5  # s, over which the force on the rail is averaged
 LOOP = 50.0  # Hz, at which PX4 runs its detector and ArduPlane its main loop
@@ -37,8 +38,8 @@ class RailMean:
         self._sum = self._time = 0.0
 
     def add(self, f: float, dt: float) -> None:
-        """Take the force, m/s², of a sample that stands for dt, s; one that is not finite is left out."""
-        if -inf < f < inf:
+        """Take the force, m/s², of a sample that stands for dt, s; one that is NaN or implausible is left out."""
+        if -MOST_FORCE < f < MOST_FORCE:
             self._sum += f * dt
             self._time += dt
             if self._time * ROUNDING >= BLOCK:
@@ -108,7 +109,7 @@ class Px4(Periodic):
 
     Notes
     -----
-    A NaN force is not above.
+    A force that is NaN or implausible is not above.
     """
 
     __slots__ = ("_acceleration", "_exceeded", "_held", "_mean")
@@ -130,7 +131,7 @@ class Px4(Periodic):
             self._held = 0.0
 
     def _run(self, f: float, elapsed: float) -> bool:
-        return self._judge(f - self._mean.before, elapsed)
+        return self._judge(f - self._mean.before if f < MOST_FORCE else nan, elapsed)
 
     def _judge(self, a: float, elapsed: float) -> bool:
         self._held = self._held + min(max(elapsed, 0.010), 0.050) if a > self._acceleration else 0.0
@@ -141,7 +142,7 @@ class Px4(Periodic):
 class Px4Norm(Px4):
     """PX4's launch detector on the magnitude of the acceleration, as since March 2026; settings of `Px4`.
 
-    A sample that is NaN along any axis is not above, and is left out of the mean.
+    A sample that is NaN or implausible along any axis is not above, and is left out of the mean.
     """
 
     __slots__ = ("_blocks", "_felt")
@@ -153,13 +154,15 @@ class Px4Norm(Px4):
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
         """Take one sample; see `Detector`."""
-        self._felt = fx, fy, fz
+        most = MOST_FORCE
+        sound = -most < fx < most and -most < fy < most and -most < fz < most
+        self._felt = (fx, fy, fz) if sound else (nan, nan, nan)
         return super().step(t, fx, fy, fz)
 
     def _watch(self, f: float, dt: float, late: bool) -> None:
         x, y, z = self._blocks
         fx, fy, fz = self._felt
-        if -inf < fx + fy + fz < inf:
+        if fx == fx:
             x.add(fx, dt)
             y.add(fy, dt)
             z.add(fz, dt)
@@ -193,7 +196,7 @@ class ArduPilot(Periodic):
 
     Notes
     -----
-    A NaN force counts as no acceleration. A gap forgets the values and ends the delay.
+    A force that is NaN or implausible counts as no acceleration. A gap forgets the values and ends the delay.
     """
 
     __slots__ = ("_acceleration", "_delay", "_mean", "_values", "_waited")
@@ -227,7 +230,7 @@ class ArduPilot(Periodic):
             self._forget()
 
     def _run(self, f: float, elapsed: float) -> bool:
-        a = f - self._mean.before
+        a = f - self._mean.before if _plausible(f) else nan
         self._values = (*self._values[1:], a if a == a else 0.0)
         a, b, c, d, e = self._values  # not sum(), which compensates its rounding in some versions of Python
         self.triggered = a + b + c + d + e >= 5.0 * self._acceleration
@@ -257,7 +260,8 @@ class Inav(OneAxis):
 
     Notes
     -----
-    The low-pass begins at rest at the first force. One that is not finite is not above and passes the low-pass by.
+    The low-pass begins at rest at the first force. One that is NaN or implausible is not above and
+    passes the low-pass by.
     """
 
     __slots__ = ("_a1", "_a2", "_acceleration", "_b0", "_cutoff", "_held", "_needed", "_started", "_z1", "_z2")
@@ -285,7 +289,7 @@ class Inav(OneAxis):
     def _take(self, f: float, dt: float, late: bool) -> bool:
         if late:
             self._clear()
-        if not isfinite(f) or not self._filtered(f) > self._acceleration:
+        if not (_plausible(f) and self._filtered(f) > self._acceleration):
             self._held = 0.0
             self.triggered = False
             return False
@@ -334,7 +338,7 @@ class Paparazzi(Periodic):
 
     Notes
     -----
-    A NaN force at a call is one below.
+    A force that is NaN or implausible at a call is one below.
     """
 
     __slots__ = ("_acceleration", "_calls")
@@ -366,7 +370,7 @@ class Paparazzi(Periodic):
             self._begin()
 
     def _run(self, f: float, elapsed: float) -> bool:
-        if not f >= self._acceleration:
+        if not self._acceleration <= f < MOST_FORCE:
             self._begin()
             return False
         self.level, self.count, self.total, self.triggered = 1, self.count + 1, self._calls, True
@@ -399,7 +403,7 @@ class AltOs(OneAxis):
 
     Notes
     -----
-    A force that is not finite is left out. A gap sets the integral to 0.
+    A force that is NaN or implausible is left out. A gap sets the integral to 0.
     """
 
     __slots__ = ("_acceleration", "_mean", "_speed", "gained")
@@ -415,14 +419,18 @@ class AltOs(OneAxis):
 
     def _take(self, f: float, dt: float, late: bool) -> bool:
         self._mean.add(f, dt)
-        a = f - self._mean.before
+        a = f - self._mean.before if _plausible(f) else nan
         if late:
             self.gained = 0.0
-        if not isfinite(a):
+        if a != a:
             return False
         self.gained = max(0.0, self.gained + a * dt)
         self.triggered = a > self._acceleration
         return self.triggered and self.gained > self._speed
+
+
+def _plausible(f: float) -> bool:
+    return -MOST_FORCE < f < MOST_FORCE
 
 
 def lowpass(share: float) -> tuple[float, float, float]:

@@ -17,6 +17,7 @@ from math import isfinite, sqrt
 
 from uavsim.onboard.launch.axis import GRAVITY, Counting, whole
 from uavsim.onboard.launch.detector import Axis, require
+from uavsim.onboard.plausible import MOST_FORCE
 
 SCALE = 2.0**20  # steps in 1 m/s²
 
@@ -53,8 +54,8 @@ class GlrBank(Counting):
 
     Notes
     -----
-    Before the first sample and before the end of a gap, and where the force is NaN, samples count as ones that take off
-    `fall`. A sample that follows lost ones counts for them too.
+    Before the first sample and before the end of a gap, and where the force is NaN or implausible, samples count as
+    ones that take off `fall`. A sample that follows lost ones counts for them too.
 
     Examples
     --------
@@ -94,7 +95,7 @@ class GlrBank(Counting):
     def _count(self, f: float) -> bool:
         above = f - self._reference + self._fall
         total, ring, k, reached = self._sum, self._ring, self._k, False
-        if above > 0.0:
+        if above > 0.0 and f < MOST_FORCE:
             total += int(SCALE * (above if above < self._span else self._span))
             for n, limit in self._windows:
                 if total - ring[k - n] > limit:

@@ -11,6 +11,7 @@ from math import inf, isfinite
 
 from uavsim.onboard.launch.axis import OneAxis
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+from uavsim.onboard.plausible import MOST_FORCE
 
 
 class DoubleThreshold(OneAxis):
@@ -45,8 +46,8 @@ class DoubleThreshold(OneAxis):
 
     Notes
     -----
-    The first sample of a hold counts one nominal period, each other one the time since its predecessor. A NaN force
-    and a gap end the hold; the sample after a gap may begin one.
+    The first sample of a hold counts one nominal period, each other one the time since its predecessor. A force that
+    is NaN or implausible and a gap end the hold; the sample after a gap may begin one.
 
     Examples
     --------
@@ -72,9 +73,9 @@ class DoubleThreshold(OneAxis):
         self.triggered = False
 
     def _take(self, f: float, dt: float, late: bool) -> bool:
-        if self.triggered and not late and f > self._threshold:
+        if self.triggered and not late and self._threshold < f < MOST_FORCE:
             self.held += dt
-        elif f > self._trigger:
+        elif self._trigger < f < MOST_FORCE:
             self.held = self._period
             self.triggered = True
         else:

@@ -21,6 +21,8 @@ from math import inf, isfinite
 from typing import Literal, get_args
 
 from uavsim.onboard.launch.detector import Axis, periods, require
+from uavsim.onboard.plausible import MOST_FORCE
+from uavsim.onboard.stamps import Stamps, jump
 
 
 class MultiLevelWindow:
@@ -44,7 +46,7 @@ class MultiLevelWindow:
     period : float, optional
         Time that a sample stands for, s. One that comes later, up to `GAP_PERIODS` of them, is counted once for each; a
         longer gap abandons the windows, and the sample after it is looked at as if there had been none. None: every
-        sample counts once, whatever its time.
+        sample counts once, whatever its time, and none is too far ahead of the last.
 
     Attributes
     ----------
@@ -61,8 +63,8 @@ class MultiLevelWindow:
 
     Notes
     -----
-    A sample that is NaN along an axis is one that does not exceed there. One whose time is NaN, infinite or not later
-    than the last is ignored.
+    A sample that is NaN or implausible along an axis is one that does not exceed there. Which samples are left out for
+    their times is said in `uavsim.onboard.stamps`; one that shows that the clock has taken a step comes after a gap.
 
     Examples
     --------
@@ -74,11 +76,13 @@ class MultiLevelWindow:
     __slots__ = (
         "_counters",
         "_idle",
+        "_longest",
         "_lower",
         "_once",
         "_only_x",
         "_period",
         "_recognised",
+        "_stamps",
         "_t",
         "_upper_x",
         "_upper_yz",
@@ -114,6 +118,8 @@ class MultiLevelWindow:
             )
         self._period = inf if period is None else period
         self._once = 1.5 * self._period  # s; up to here a sample counts once
+        self._stamps = Stamps(inf if period is None else jump(1.0 / period))
+        self._longest = self._stamps.longest
         names: tuple[str, ...] = ("any",) if axes == "any" else axes
         self._counters = tuple(
             _Counter(
@@ -155,8 +161,10 @@ class MultiLevelWindow:
         fx, fy, fz : float
             Specific force in body axes, m/s².
         """
-        if not self._t < t < inf:
-            return False
+        if not 0.0 < t - self._t <= self._longest:
+            if not self._stamps.admit(t, self._t):
+                return False
+            self._t = -inf  # as if there had been none before
         if self._idle and fx <= self._upper_x and (self._only_x or self._inside(fx, fy, fz)):
             self._t = t
             return False
@@ -252,7 +260,7 @@ class _Counter:
         """Count one sample; True if it ends a window with a sufficient share above the threshold."""
         f = _largest(force) if self._axis is None else self._sign * force[self._axis]
         if not self.triggered:
-            if self._dead or not f > self._trigger:
+            if self._dead or not self._trigger < f < MOST_FORCE:
                 self.level = self.count = self.total = 0  # a window that failed is shown until the sample after it
                 return False
             self.triggered = True
@@ -261,7 +269,7 @@ class _Counter:
             if self.total == self.level * self._samples:
                 self.level += 1
             self.total += 1
-            if f > self._threshold:
+            if self._threshold < f < MOST_FORCE:
                 self.count += 1
         if self.total < self.level * self._samples:
             return False
@@ -274,6 +282,9 @@ class _Counter:
 
 
 def _largest(force: tuple[float, float, float]) -> float:
-    """Largest magnitude; max() passes over a NaN that does not come first."""
-    fx, fy, fz = force
-    return max(0.0, abs(fx), abs(fy), abs(fz))
+    """Largest magnitude of those that are plausible; 0 without any."""
+    largest = 0.0
+    for f in force:
+        if largest < abs(f) < MOST_FORCE:
+            largest = abs(f)
+    return largest

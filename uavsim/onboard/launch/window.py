@@ -6,8 +6,8 @@
 
 Shares are compared in whole numbers. Windows are times, as of the published method: a sample that follows lost ones
 counts for them. Sources: "threshold + time window", "threshold + sequence + time window" and
-"threshold + sliding time window", to which the published method compares itself. A sample that is NaN does not exceed;
-a gap abandons what was counted.
+"threshold + sliding time window", to which the published method compares itself. A sample that is NaN or
+implausible does not exceed; a gap abandons what was counted.
 """
 
 from fractions import Fraction
@@ -16,6 +16,7 @@ from math import isfinite
 from uavsim.onboard.launch.axis import Counting, whole
 from uavsim.onboard.launch.detector import Axis, require
 from uavsim.onboard.launch.nested import MultiLevelWindow
+from uavsim.onboard.plausible import MOST_FORCE
 
 
 class ThresholdWindow(MultiLevelWindow):
@@ -120,7 +121,7 @@ class SlidingWindow(Counting):
         self.triggered = False
 
     def _count(self, f: float) -> bool:
-        above = f > self._threshold
+        above = self._threshold < f < MOST_FORCE
         if not self.count:
             if not above:
                 return False  # a ring of zeros need not turn
@@ -198,8 +199,8 @@ class SequenceWindow(Counting):
     def _count(self, f: float) -> bool:
         if self.triggered:
             self.total += 1
-            self.count += f > self._threshold
-        elif f > self._trigger:
+            self.count += self._threshold < f < MOST_FORCE
+        elif self._trigger < f < MOST_FORCE:
             self._row += 1
             if self._row < self._sequence:
                 return False
