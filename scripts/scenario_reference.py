@@ -14,7 +14,9 @@ from inspect import cleandoc, getdoc
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from uavsim.scenario import Scenario
+from sensors import data_files
+from uavsim import settings
+from uavsim.scenario import MOST_READINGS, Scenario
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "scenario.md"
 
@@ -43,8 +45,18 @@ maximum = 0.030
 `uavsim fly FILE.toml` flies it; `uavsim scenarios` lists the packaged ones. A flight's folder holds its resolved
 `scenario.toml`, which flies again to the same result.
 
+Besides what each key allows: a number is 0 or from {least:g} to {most:g} in magnitude; a text has at most {text}
+characters, a list {entries} entries, a list of groups {groups}; and no sensor gives more than {readings} readings in a
+flight, which is `duration` times its rate. A file has at most {bytes} bytes, {marks} keys and entries, {parts} parts
+in a name and brackets {deep} deep, so that reading any file takes less than a second.
+
 This page is written by `scripts/scenario_reference.py` from the settings' own declarations.
 """
+BOUNDS = {
+    "least": settings.SMALLEST_NUMBER, "most": settings.LARGEST_NUMBER, "text": settings.LONGEST_TEXT,
+    "entries": settings.MOST_ENTRIES, "groups": settings.MOST_GROUPS, "readings": MOST_READINGS,
+    "bytes": data_files.LARGEST, "marks": data_files.MARKS, "parts": data_files.PARTS, "deep": data_files.DEEPEST,
+}  # fmt: skip
 
 
 def page() -> str:
@@ -53,7 +65,7 @@ def page() -> str:
         _group(f"`[{name.rstrip('.')}]`" if name else "At the top", name, kind) for name, kind in _groups()
     )
     lists = "".join(_group(", ".join(names), "", kind) for kind, names in _lists().items())
-    return cleandoc(INTRODUCTION) + "\n" + groups + lists
+    return cleandoc(INTRODUCTION).format(**BOUNDS) + "\n" + groups + lists
 
 
 def _groups(kind: type = Scenario, prefix: str = "") -> Iterator[tuple[str, type]]:
