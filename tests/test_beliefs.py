@@ -1,6 +1,7 @@
 """What the estimator believes: the descriptions' own numbers, through [mismatch]; figures by hand."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from sensors import AirDataHead, Streams
 from uavsim.beliefs import believed_air, believed_noise, calibrated, turbulence
 from uavsim.cosim import draw
+from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.scenario import Scenario, load_scenario
 
 
@@ -85,15 +87,33 @@ def test_turbulence_is_that_of_the_specification() -> None:
 
 
 def test_declared_turbulence_is_believed_and_none_changes_nothing() -> None:
-    calm = scenario()
-    assert believed_air(calm) is calm.estimator
+    calm = believed_air(scenario()).aided
+    plain = scenario().estimator.aided
+    assert calm == replace(plain, flight_force=calm.flight_force)
     gusty = scenario("environment.turbulence_wind_20ft=7.5", "flight_computer.height=60")
     found = believed_air(gusty).aided
     assert (found.gust_sd, found.gust_length) == turbulence(7.5, 60.0)
     assert found.gust_height == 60.0
-    assert (
-        believed_air(scenario("environment.turbulence_wind_20ft=7.5", "mismatch.gust=0")).aided == calm.estimator.aided
-    )
+    assert believed_air(scenario("environment.turbulence_wind_20ft=7.5", "mismatch.gust=0")).aided == calm
+
+
+@pytest.mark.parametrize(("held", "bound"), [(32.0, 128.0), (10.0, 40.0), (100.0, FASTEST)])
+def test_an_aircraft_is_never_faster_than_four_times_what_it_holds(held: float, bound: float) -> None:
+    assert believed_air(scenario(f"flight_computer.airspeed={held}")).fastest == bound
+    assert believed_air(scenario(f"flight_computer.airspeed={held}", "estimator.fastest=70")).fastest == 70.0
+
+
+def test_a_rig_is_bounded_by_the_parts_alone() -> None:
+    """A tunnel blows at Mach 0.6, and a centrifuge holds 15 g for as long as it likes."""
+    flown, rig = believed_air(scenario()), believed_air(load_scenario("mach06"))
+    assert (flown.aided.flight_force, rig.aided.flight_force) == (MOST_FLIGHT_FORCE, MOST_FORCE)
+    assert rig.fastest == FASTEST
+    set_ = believed_air(load_scenario("mach06", overrides=["estimator.aided.flight_force=90"]))
+    assert set_.aided.flight_force == 90.0
+
+
+def test_the_heads_rate_says_which_of_its_stamps_follow() -> None:
+    assert believed_noise(scenario("air_data.rate=0.5")).head_rate == 0.5
 
 
 def test_a_warm_board_is_no_thermometer_of_the_air() -> None:

@@ -102,14 +102,12 @@ def readings(seed: int, count: int, share: float = 0.003, rows_each: int = 10) -
     left, k = count, 0
     while left > 0:
         t, force, k = clock(), rail(), k + 1
-        row = head(t, rail.speed, draw)
         if (hurt := value()) is not None:
             force[hurt.choice((0, 0, 1, 2))] = hurt.choice(FORCES) if hurt.random() < 0.6 else hurt.choice(LOADS)
-        if (hurt := stamp()) is not None:
-            t = shifted(hurt, t)
-        yield t, force[0], force[1], force[2]
+        yield (t if (hurt := stamp()) is None else shifted(hurt, t)), force[0], force[1], force[2]
         left -= 1
         if not k % rows_each and left > 0:
+            row = head(t, rail.speed, draw)
             for place, burst in enumerate(bursts):
                 if (hurt := burst()) is not None:
                     row[place] = DAMAGE[place](hurt, row[place])

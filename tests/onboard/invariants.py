@@ -209,8 +209,8 @@ def estimator_recovers(
     for reading, t, truth in stream:
         if len(reading) == 4:
             estimator.accelerometer(*reading)
-            if waits and waits[-1][0] <= t < waits[-1][0] + 0.2 and abs(reading[0] - t) < 100.0:
-                getattr(estimator, waits.pop()[1])(reading[0])
+            if waits and t >= waits[-1][0]:
+                getattr(estimator, waits.pop()[1])(t)
             continue
         estimate = estimator.step(*reading)
         estimator.tidy()
