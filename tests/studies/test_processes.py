@@ -91,8 +91,8 @@ def test_a_script_that_cannot_be_run_again_is_told_so(tmp_path: Path) -> None:
     command = [sys.executable, "script.py"]
     run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 1
-    assert "if __name__ == '__main__':" in run.stderr
-    assert run.stderr.endswith("RuntimeError: a process to work in ended before it began, with status 1\n")
+    assert "RuntimeError: a process to work in ended before it began, with status 1; it runs the main" in run.stderr
+    assert run.stderr.endswith("is below `if __name__ == '__main__':`\n")
 
 
 LONG = """

@@ -130,7 +130,6 @@ def fly_seeds(
     started = time.monotonic()
     done: dict[int, Result] = {}
     lost: list[int] = []
-    complete = True
 
     def finished(results: list[tuple[int, Result]]) -> None:
         if keep is not None:
@@ -148,14 +147,14 @@ def fly_seeds(
             fly_one = partial(_one_of, scenario)
             lost = each(fly_one, list(enumerate(seeds)), workers=min(workers, len(seeds)), done=finished)
     except KeyboardInterrupt:
-        complete = False
+        pass  # what was finished tells it
     ordered = [done[position] for position in sorted(done)]
     return Batch(
         scenario=scenario,
         runs=pd.DataFrame([row for row, _, _ in ordered]),
         traces=[trace for _, trace, _ in ordered],
         kept={flight.score["seed"]: flight for _, _, flight in ordered if flight is not None},
-        complete=complete and not lost,
+        complete=len(done) == len(seeds),
         wall_time=time.monotonic() - started,
         lost=tuple(seeds[position] for position in lost),
     )

@@ -147,7 +147,10 @@ class _Crew(Generic[A, R]):
         assert part is not None
         status = worker.end()
         if not worker.began and status > 0:  # it is not killed but cannot work, and said why
-            raise RuntimeError(f"a process to work in ended before it began, with status {status}")
+            raise RuntimeError(
+                f"a process to work in ended before it began, with status {status}; it runs the main script anew: "
+                "that needs to be a file whose work is below `if __name__ == '__main__':`"
+            ) from None
         self._died[part] += 1
         (self._again if self._died[part] < LIVES else self.lost).append(part)
 

@@ -81,14 +81,21 @@ class Record:
 
     def keep(self, results: list[tuple[int, Result]]) -> None:
         """Write finished flights: those that are kept, then the rows of all."""
-        for position, (row, _, flight) in results:
-            if flight is not None:
-                self._keep_flight(flight)
-            self._rows.setdefault(position // PART, {})[position] = row
-        for part in {position // PART for position, _ in results}:
-            rows = self._rows[part]
-            with whole(self._part(part)) as file:
-                _table([rows[position] for position in sorted(rows)]).to_parquet(file, index=False)
+        written = set()
+        try:
+            for position, (row, _, flight) in results:
+                if flight is not None:
+                    self._keep_flight(flight)
+                self._rows.setdefault(position // PART, {})[position] = row
+                written.add(position // PART)
+        finally:
+            for part in written:
+                self._write_rows(part)
+
+    def _write_rows(self, part: int) -> None:
+        rows = self._rows[part]
+        with whole(self._part(part)) as file:
+            _table([rows[position] for position in sorted(rows)]).to_parquet(file, index=False)
 
     def _part(self, number: int) -> Path:
         """File of up to `PART` rows: `runs.parquet`, or one in a folder of that name, by position."""
