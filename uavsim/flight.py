@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sensors.data_files import LARGEST, parse_json, parse_toml, read_text
 from uavsim.truth import UNITS as TRUTH_UNITS
 
 if TYPE_CHECKING:
@@ -146,6 +145,8 @@ def load(path: str | os.PathLike[str]) -> Flight:
     ValueError
         If it is not one, or is damaged; one line that names the file.
     """
+    from sensors.data_files import parse_json, parse_toml
+
     folder = Path(path)
     if not folder.is_dir():
         raise ValueError(f"{folder} is not a flight's folder: there is no such folder")
@@ -159,6 +160,8 @@ def load(path: str | os.PathLike[str]) -> Flight:
 
 
 def _read(file: Path, parse: Callable[[str], Any], kind: type) -> Any:
+    from sensors.data_files import LARGEST, read_text
+
     if not file.exists():
         raise ValueError(f"{file.parent} is not a flight's folder: {file.name} is missing")
     try:

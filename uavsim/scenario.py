@@ -41,7 +41,7 @@ Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverge
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
 PLANT_STEP = 1e-3  # s
-MOST_READINGS = 6_000_000  # of one sensor in a flight: a gigabyte, and some minutes
+MOST_READINGS = 6_000_000  # of one sensor in a flight, which take 1.4 GB and a minute
 NAME = r"[^\W_][\w .+-]{0,99}"
 
 
