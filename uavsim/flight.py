@@ -46,6 +46,7 @@ OURS = {f"{table}.parquet" for table in (*UNITS, "runs")} | {
 """What is in the folders of flights and campaigns, and so is replaced when one is written again."""
 
 
+LONGEST_TIME = 1e18  # s; a clock in microseconds since 1970 that was taken for seconds has 2e15
 LARGEST_JSON = 50_000_000  # bytes; a recording of a million detections has as much
 
 
@@ -180,7 +181,9 @@ def _read(file: Path, parse: Callable[[str], Any], kind: type) -> Any:
 
 
 def _is_event(value: Any) -> bool:
-    return isinstance(value, dict) and isinstance(value.get("t"), int | float) and isinstance(value.get("event"), str)
+    if not isinstance(value, dict) or not isinstance(value.get("event"), str):
+        return False
+    return isinstance(value.get("t"), int | float) and abs(value["t"]) < LONGEST_TIME
 
 
 def _read_table(name: str, file: Path) -> "pd.DataFrame":

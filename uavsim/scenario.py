@@ -42,7 +42,7 @@ PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
 PLANT_STEP = 1e-3  # s
 MOST_READINGS = 6_000_000  # of one sensor in a flight, which take 1.4 GB and a minute
-NAME = r"[^\W_][\w .+-]{0,99}"
+NAME = r"(?!.*[\u115f\u1160\u3164\uffa0])[^\W_][\w .+-]{0,99}"  # without the letters of Unicode that have no ink
 
 
 @dataclass(frozen=True, slots=True)
