@@ -47,8 +47,9 @@ maximum = 0.030
 
 Besides what each key allows: a number is 0 or from {least:g} to {most:g} in magnitude; a text has at most {text}
 characters, a list {entries} entries, a list of groups {groups}; and no sensor gives more than {readings} readings in a
-flight, which is `duration` times its rate. A file has at most {bytes} bytes, {marks} keys and entries, {parts} parts
-in a name and brackets {deep} deep, so that reading any file takes less than a second.
+flight, which is `duration` times its rate. (At the default rates an hour of flight takes 4.5 GB of memory.) A file has
+at most {bytes} bytes, {marks} keys and entries, {parts} parts in a name and brackets {deep} deep, so that reading any
+file takes less than a second.
 
 This page is written by `scripts/scenario_reference.py` from the settings' own declarations.
 """

@@ -23,13 +23,15 @@ from hypothesis import strategies as st
 from mutations import mutated, written
 
 import uavsim
-from sensors import data_files, presets
-from sensors.accelerometer_description import AccelerometerDescription
+from sensors import Accelerometer, Streams, data_files, presets
+from sensors.accelerometer_description import AccelerometerDescription, AccelerometerErrors
 from sensors.catalogue import preset, sheet
 from sensors.choice import nearest
 from sensors.data_files import check_shape, parse_json, parse_toml, read_text
 from sensors.datasheet_bounds import ACCELEROMETER, MODE, PRESSURE
 from sensors.datasheet_check import check
+from sensors.pressure_description import PressureDescription
+from sensors.unit import Unit
 from uavsim import cli
 from uavsim.cosim import Cosimulation
 from uavsim.plants.rig_settings import length
@@ -333,6 +335,25 @@ def test_every_number_of_a_preset_has_an_upper_bound() -> None:
         part["modes"][0][key] = 9e14
         with pytest.raises(ValueError, match=rf"key modes\.{key}\b"):
             check(part)
+
+
+@pytest.mark.parametrize("unit", ["random", "typical", "ideal"])
+def test_whatever_factor_is_on_a_clock_it_runs_forwards_and_no_more_than_half_too_fast(unit: Unit) -> None:
+    part = preset("mpu-6050")
+    assert isinstance(part, AccelerometerDescription)
+    worst = replace(part, rate_sd=0.5, rate_limit=0.5).scaled(1.0, AccelerometerErrors(clock=1000.0))
+    for seed in range(20):
+        assert abs(Accelerometer(worst, Streams(seed), unit=unit).rate_error) <= 0.5
+
+
+@pytest.mark.parametrize("weight", [0.5, 0.8284, 0.83, 0.9, 0.9999, 1.0])
+def test_a_filter_that_is_nowhere_3_db_down_leaves_the_conversions_bandwidth(weight: float) -> None:
+    """y += a (x - y) is 3 dB down at half the rate for a = 2 (√2 - 1) = 0.8284, and for none above."""
+    part = preset("bmp390")
+    assert isinstance(part, PressureDescription)
+    filtered = replace(part, iir_weights=((0, 1.0), (2, weight))).select(iir=2)
+    expected = 0.4429 / part.mode.conversion_time
+    assert (filtered.bandwidth == pytest.approx(expected)) is (weight > 0.8284)
 
 
 SHORT = ("duration=3.5", "launcher.wait_min=2", "launcher.wait_max=2.1", "requirements=[]", "expect=timeout")

@@ -112,6 +112,11 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
         ("name=", "name = '': it names a folder"),
         ("name=.hidden", "it names a folder"),
         ("name=" + "n" * 101, "it names a folder"),
+        ("name=a\u3164b", "it names a folder"),
+        (
+            "vibration.spectra=[{psd=[[5, 0]]}]",
+            "each a list of a number above 0 and below 500 and a number above 0 and of",
+        ),
         ("name=\udcff", "must be text"),
         ("requirements=3", "must be a list, each a group of key, minimum and maximum"),
         ('requirements=[{key="airspeed.rmse", maximun=1}]', "unknown key 'maximun' in requirements[0]"),

@@ -12,8 +12,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sensors.data_files import LARGEST, parse_json, parse_toml, read_text
-from uavsim import inputs
 from uavsim.files import whole, write_json, write_toml
 from uavsim.folders import Place
 from uavsim.truth import UNITS as TRUTH_UNITS
@@ -42,6 +40,7 @@ UNITS: dict[str, dict[str, str]] = {
 """The tables of a flight: their columns and units, in order; what has no unit has an empty one."""
 
 
+LONGEST_TIME = 1e18  # s; a clock in microseconds since 1970 that was taken for seconds has 2e15
 LARGEST_JSON = 50_000_000  # bytes; a recording of a million detections has as much
 
 
@@ -127,6 +126,8 @@ class Flight:
 
     def write(self, folder: Path, extra: Callable[[Path], None] | None = None) -> None:
         """Write the files into a folder that is there; `score.json` is the last one: with it the flight is whole."""
+        from uavsim import inputs  # late: a flight that is looked at needs no sensors
+
         write_json(folder / "events.json", self.events)
         for name, table in self.tables.items():
             write_table(folder / f"{name}.parquet", table, UNITS[name])
@@ -144,6 +145,9 @@ def load(path: str | os.PathLike[str]) -> Flight:
     ValueError
         If it is not one, or is damaged; one line that names the file.
     """
+    from sensors.data_files import parse_json, parse_toml
+    from uavsim import inputs
+
     folder = Path(path)
     if not folder.is_dir():
         raise ValueError(f"{folder} is not a flight's folder: there is no such folder")
@@ -161,6 +165,8 @@ def load(path: str | os.PathLike[str]) -> Flight:
 
 
 def _read(file: Path, parse: Callable[[str], Any], kind: type) -> Any:
+    from sensors.data_files import LARGEST, read_text
+
     if not file.exists():
         raise ValueError(f"{file.parent} is not a flight's folder: {file.name} is missing")
     try:
@@ -179,7 +185,9 @@ def _read(file: Path, parse: Callable[[str], Any], kind: type) -> Any:
 
 
 def _is_event(value: Any) -> bool:
-    return isinstance(value, dict) and isinstance(value.get("t"), int | float) and isinstance(value.get("event"), str)
+    if not isinstance(value, dict) or not isinstance(value.get("event"), str):
+        return False
+    return isinstance(value.get("t"), int | float) and abs(value["t"]) < LONGEST_TIME
 
 
 def _read_table(name: str, file: Path) -> "pd.DataFrame":

@@ -273,9 +273,15 @@ def _allowed(hint: Any) -> str:
     if origin in (Union, types.UnionType):
         return _listed([_allowed(member) for member in members if member is not type(None)])
     if origin is tuple:
-        count = "" if Ellipsis in members else f" of {len(members)}"
-        return f"a list{count}, each {_allowed(members[0])}"
+        return _allowed_list(members)
     return "a group of NAME = number" if origin is dict else _WORDS[hint]
+
+
+def _allowed_list(members: tuple[Any, ...]) -> str:
+    if len(set(members) - {Ellipsis}) > 1:
+        return f"a list of {_listed([_allowed(member) for member in members], 'and')}"
+    count = "" if Ellipsis in members else f" of {len(members)}"
+    return f"a list{count}, each {_allowed(members[0])}"
 
 
 def _bounds(bound: Any) -> str:
