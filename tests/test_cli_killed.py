@@ -35,6 +35,7 @@ FILES = {"scenario.toml", "score.json", "events.json", *(f"{name}.parquet" for n
 GONE = 60.0  # s after which a process is one too many; it takes a tenth of one on an idle machine
 
 TERMINAL = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"  # not so in the background
+TWO = "import os\nos.cpu_count = lambda: 2\n"  # workers, whatever the machine
 MAIN = "from uavsim import cli\ncli.main()\n"
 FLYING = """
 from uavsim import cosim
@@ -60,7 +61,7 @@ def starting() -> Iterator[Start]:
 
     def start(cwd: Path, *arguments: str, code: str = "") -> Started:
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "COLUMNS": "80"}
-        command = [sys.executable, "-c", TERMINAL + code + MAIN, *arguments]
+        command = [sys.executable, "-c", TERMINAL + TWO + code + MAIN, *arguments]
         pipe = subprocess.PIPE
         process = subprocess.Popen(
             command, cwd=cwd, env=environment, text=True, start_new_session=True, stdout=pipe, stderr=pipe

@@ -18,7 +18,9 @@ def test_a_file_appears_when_it_is_whole(tmp_path: Path) -> None:
         assert file.read_text() == "before"
         assert part.parent == tmp_path  # on the same disk, so that it can be renamed
         assert part.name.startswith(".")  # a folder of Parquet files is read without it
+        number = part.stat().st_ino
     assert file.read_text() == "new"
+    assert file.stat().st_ino == number  # renamed, not copied
     assert list(tmp_path.iterdir()) == [file]
 
 

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -172,6 +173,20 @@ def test_what_was_there_comes_back_when_it_cannot_be_replaced(tmp_path: Path, mo
         assert everything(tmp_path) == set(old)
 
 
+def test_what_makes_a_flight_whole_comes_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it is moved in file by file, a kill in between leaves no folder that passes for a whole one."""
+    rename = Path.rename
+
+    def watch(source: Path, to: Path) -> Path:
+        assert not (tmp_path / "score.json").exists()
+        return rename(source, to)
+
+    with Place(tmp_path) as place:
+        put(place, score_json="{}", a_txt="", z_txt="")
+        monkeypatch.setattr(Path, "rename", watch)
+    assert everything(tmp_path) == {"score.json", "a.txt", "z.txt"}
+
+
 def test_an_interrupt_while_it_takes_its_place_comes_too_late(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     settle = Place._settle
 
@@ -323,6 +338,37 @@ def test_what_is_not_of_a_run_is_left_alone(tmp_path: Path) -> None:
         with pytest.raises(TakenError, match=f"{name}.unfinished is in the way: no run of yours has left it"):
             Place(tmp_path / name, overwrite=True).claim()
     assert everything(tmp_path) == before
+
+
+def test_what_another_user_left_is_not_taken_over(tmp_path: Path, hold: Hold, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a place where all may write they could have put links into it."""
+    if not hasattr(os, "geteuid"):
+        pytest.skip("no users")
+    first = hold(tmp_path / "here")
+    first.kill()
+    first.wait()
+    monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
+    with pytest.raises(TakenError, match=r"here.unfinished is in the way"):
+        Place(tmp_path / "here").claim()
+
+
+def test_a_folder_that_its_holder_removes_meanwhile_is_made_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Between the opening of its file and the locking."""
+    lock, locked = folders.lock, []
+
+    def late(file: int) -> bool:
+        if not locked:
+            shutil.rmtree(tmp_path / "here.unfinished")
+        locked.append(file)
+        return lock(file)
+
+    monkeypatch.setattr(folders, "lock", late)
+    with Place(tmp_path / "here") as place:
+        put(place, x="mine")
+    assert len(locked) == 2
+    assert everything(tmp_path) == {"here", "here/x"}
 
 
 def test_without_locks_a_folder_that_is_there_counts_as_held(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

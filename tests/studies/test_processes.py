@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from uavsim.studies import processes
 from uavsim.studies.processes import each
 
 
@@ -18,8 +19,9 @@ def double(number: int) -> int:
     return 2 * number
 
 
-def die_of_odd_ones(number: int) -> int:
+def die_of_odd_ones(folder: Path, number: int) -> int:
     if number % 2:
+        (folder / str(os.getpid())).touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return number
 
@@ -31,6 +33,13 @@ def die_once(folder: Path, number: int) -> int:
         mark.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return number
+
+
+def die_once_or_take_long(folder: Path, number: int) -> int:
+    if number:
+        time.sleep(2.0)
+        return number
+    return die_once(folder, number)
 
 
 def refuse(number: int) -> int:
@@ -56,10 +65,40 @@ def test_a_part_that_its_process_died_of_is_done_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_a_part_that_its_process_died_of_twice_is_lost_and_the_others_are_done() -> None:
+def test_it_is_done_again_when_no_other_one_works(tmp_path: Path) -> None:
+    """What two at once have no memory for, one may."""
+    order: list[int] = []
+    each(
+        partial(die_once_or_take_long, tmp_path),
+        [0, 1],
+        workers=2,
+        done=lambda found: order.extend(i for i, _ in found),
+    )
+    assert order == [1, 0]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_a_part_that_its_process_died_of_twice_is_lost_and_the_others_are_done(tmp_path: Path) -> None:
     done: dict[int, int] = {}
-    assert each(die_of_odd_ones, [2, 3, 4, 6], workers=2, done=done.update) == [1]
+    assert each(partial(die_of_odd_ones, tmp_path), [2, 3, 4, 6], workers=2, done=done.update) == [1]
     assert done == {0: 2, 2: 4, 3: 6}
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_is_not_a_workers_even_while_it_gets_ready(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A terminal sends it to all; before a Python has begun it would end it, and with a traceback a moment later."""
+    start = processes.SPAWN.Process.start
+
+    def disturbed(process: "processes.SPAWN.Process") -> None:
+        start(process)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            os.kill(process.pid, number)
+
+    monkeypatch.setattr(processes.SPAWN.Process, "start", disturbed)
+    done: dict[int, int] = {}
+    assert each(double, [1, 2], workers=2, done=done.update) == []
+    assert done == {0: 2, 1: 4}
 
 
 def test_an_error_of_a_part_is_the_callers_and_tells_where_it_was() -> None:
