@@ -647,6 +647,20 @@ def test_a_ulog_that_is_all_beginnings_is_given_up() -> None:
         read_ulog(content, {"a"})
 
 
+def test_a_ulog_with_damage_in_every_message_is_given_up() -> None:
+    """Each search for where reading goes on ends at once, and there are a hundred thousand."""
+    content = formats("a:uint16_t[7] x;") + b"\x02\x00A\x00\x00" * 100_000 + b"\x04\x00A\x00\x00\x00b--" * 100_000
+    with pytest.raises(ValueError, match="damaged in too many places to be read"):
+        read_ulog(content, {"a"})
+
+
+def test_cut_messages_one_behind_the_other_are_no_ladder() -> None:
+    """Whether the log ends at one of them is not asked of the next."""
+    rung = b"\x10\x00D\x00\x00" + bytes(14) + b"\xff\x3fR"
+    found = read_ulog(formats("a:uint16_t[7] x;") + rung * 600, {"a"})
+    assert found.damage
+
+
 @pytest.mark.parametrize("size", [0, 1, 2, 3, 255])
 def test_a_dataflash_format_that_leads_nowhere_is_left_out(tmp_path: Path, size: int) -> None:
     """A message of no length would be read for ever."""
