@@ -345,6 +345,8 @@ def test_names_in_latin_1_can_be_mapped(tmp_path: Path) -> None:
         (b"# remark\n" * 200_000, "no names in the first 1000 kB"),
         (TEXT.encode() + b"1,2,3,4,5,6\n", "Expected 4 fields in line 502, saw 6"),
         (TEXT.replace("fx", "f" * 100_000).encode(), "it has t, ffffff"),
+        (b"t,fx,fy,fz\n" + b"1,2,3,4,5,6\n" * 20, "has 4 names, and lines of 6 values"),
+        (b"t,fx,fy,fz\n" + (b"1," * 50_000 + b"\n") * 3, "has 50001 columns; at most 20000 are read"),
         (b"\x28\xb5\x2f\xfd" + bytes(99), "is packed by zstd: unpack it first"),
         (b"7z\xbc\xaf\x27\x1c" + bytes(99), "is packed by 7-Zip"),
     ],
