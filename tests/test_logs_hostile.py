@@ -285,7 +285,7 @@ def test_columns_beyond_the_limit_are_one_line(tmp_path: Path) -> None:
     assert "has 30000 columns; at most 20000 are read" in refused(lambda: read_log([path]))
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(30))
 def test_a_damaged_parquet_file_is_read_or_one_line(tmp_path: Path, seed: int) -> None:
     noise = np.random.default_rng(seed)
     path = written(tmp_path / "a.parquet", frame(end=1.0))
@@ -536,7 +536,7 @@ def damaged(content: bytes, way: str, noise: np.random.Generator, header: bytes)
 def test_what_is_lost_of_a_damaged_log_is_told_and_the_rest_is_right(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str, way: str
 ) -> None:
-    """40 of each: what could be read is what was written, what is missing is remarked, nothing is printed.
+    """25 of each: what could be read is what was written, what is missing is remarked, nothing is printed.
 
     A bit that is flipped in a value cannot be seen; that way there is nothing to compare. Where a block comes
     twice, two halves may make one reading that is as it should be.
@@ -546,7 +546,7 @@ def test_what_is_lost_of_a_damaged_log_is_told_and_the_rest_is_right(
     good = read_log([path])
     written = {tuple(row) for row in good.readings.tolist()}
     read = 0
-    for seed in range(40):
+    for seed in range(25):
         path.write_bytes(damaged(content, way, np.random.default_rng(seed), HEADERS[kind]))
         try:
             recording = read_log([path])
@@ -570,7 +570,7 @@ def test_what_is_lost_of_a_damaged_log_is_told_and_the_rest_is_right(
             assert ("is truncated" in remark) == (way == "truncate")
             assert len(remark) < LONGEST
         assert len(rows) > 0.7 * len(written) or way == "truncate"
-    assert read > 10 or way == "double"
+    assert read > 5 or way == "double"
     assert capfd.readouterr() == ("", "")
 
 
