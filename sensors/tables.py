@@ -76,13 +76,16 @@ class CsvTable:
 
     def __init__(self, held: Held) -> None:
         self._held = held
-        self._encoding, line = _first_line(held)
-        self._separator = max(SEPARATORS, key=line.count)
-        columns = line.count(self._separator) + 1
+        self._encoding, lines = _first_lines(held)
+        self._separator = max(SEPARATORS, key=lines[0].count)
+        columns = max(line.count(self._separator) for line in lines) + 1
         if columns > MOST_COLUMNS:
             raise ValueError(f"has {columns} columns; at most {MOST_COLUMNS} are read")
         with _csv_understood(), held.open() as file:
-            self.names = _told_apart(self._csv(file, nrows=0).columns)
+            begun = self._csv(file, nrows=1)
+        self.names = _told_apart(begun.columns)
+        if (more := begun.index.nlevels) > 1:
+            raise ValueError(f"has {len(self.names)} names, and lines of {len(self.names) + more} values")
 
     def read(self, columns: Collection[str]) -> dict[str, Array]:
         """Return columns of it as numbers."""
@@ -125,8 +128,8 @@ def _csv_understood() -> Iterator[None]:
             raise ValueError(f"not a table of comma-separated values ({said})") from error
 
 
-def _first_line(held: Held) -> tuple[str, str]:
-    """Return the encoding of a CSV file, and the line of names."""
+def _first_lines(held: Held) -> tuple[str, list[str]]:
+    """Return the encoding of a CSV file, the line of names, and the one behind it."""
     head = held.first(LONGEST_LINE)
     if not head:
         raise ValueError("not a table of comma-separated values (an empty file)")
@@ -140,7 +143,7 @@ def _first_line(held: Held) -> tuple[str, str]:
     said = [line for line in whole if line.strip() and not line.startswith("#")]
     if not said and whole != lines:
         raise ValueError(f"not a table of comma-separated values (no names in the first {LONGEST_LINE // 1000} kB)")
-    return encoding, said[0] if said else ""
+    return encoding, [*said[:2], ""][:2]
 
 
 def _is_utf8(head: bytes) -> bool:

@@ -428,13 +428,6 @@ FORMATS = [
 ]
 
 
-@pytest.fixture
-def libraries() -> None:
-    pytest.importorskip("pyulog")
-    pytest.importorskip("pymavlink")
-
-
-@pytest.mark.usefixtures("libraries")
 @pytest.mark.parametrize(("name", "write", "column", "axes"), FORMATS)
 def test_an_autopilots_log_is_read_with_and_without_a_map(tmp_path: Path, name, write, column, axes) -> None:
     table = frame(end=4.0, start=1.0)
@@ -450,7 +443,6 @@ def test_an_autopilots_log_is_read_with_and_without_a_map(tmp_path: Path, name, 
     assert np.array_equal(second.readings, plain.readings)
 
 
-@pytest.mark.usefixtures("libraries")
 @pytest.mark.parametrize(("name", "write", "column", "axes"), FORMATS)
 def test_an_unknown_message_is_one_line_with_those_there_are(tmp_path: Path, name, write, column, axes) -> None:
     rows = list(frame(end=1.0).itertuples(index=False, name=None))
@@ -472,7 +464,6 @@ def test_an_unknown_message_is_one_line_with_those_there_are(tmp_path: Path, nam
         read_log([path])
 
 
-@pytest.mark.usefixtures("libraries")
 @pytest.mark.parametrize("cut", [1, 5, 20, 4003])
 def test_a_truncated_ulog_is_replayed_as_far_as_it_goes(tmp_path: Path, cut: int) -> None:
     table = frame(end=4.0)

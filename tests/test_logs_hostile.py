@@ -285,7 +285,7 @@ def test_columns_beyond_the_limit_are_one_line(tmp_path: Path) -> None:
     assert "has 30000 columns; at most 20000 are read" in refused(lambda: read_log([path]))
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(30))
 def test_a_damaged_parquet_file_is_read_or_one_line(tmp_path: Path, seed: int) -> None:
     noise = np.random.default_rng(seed)
     path = written(tmp_path / "a.parquet", frame(end=1.0))
@@ -345,6 +345,8 @@ def test_names_in_latin_1_can_be_mapped(tmp_path: Path) -> None:
         (b"# remark\n" * 200_000, "no names in the first 1000 kB"),
         (TEXT.encode() + b"1,2,3,4,5,6\n", "Expected 4 fields in line 502, saw 6"),
         (TEXT.replace("fx", "f" * 100_000).encode(), "it has t, ffffff"),
+        (b"t,fx,fy,fz\n" + b"1,2,3,4,5,6\n" * 20, "has 4 names, and lines of 6 values"),
+        (b"t,fx,fy,fz\n" + (b"1," * 50_000 + b"\n") * 3, "has 50001 columns; at most 20000 are read"),
         (b"\x28\xb5\x2f\xfd" + bytes(99), "is packed by zstd: unpack it first"),
         (b"7z\xbc\xaf\x27\x1c" + bytes(99), "is packed by 7-Zip"),
     ],
@@ -534,7 +536,7 @@ def damaged(content: bytes, way: str, noise: np.random.Generator, header: bytes)
 def test_what_is_lost_of_a_damaged_log_is_told_and_the_rest_is_right(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str, way: str
 ) -> None:
-    """40 of each: what could be read is what was written, what is missing is remarked, nothing is printed.
+    """25 of each: what could be read is what was written, what is missing is remarked, nothing is printed.
 
     A bit that is flipped in a value cannot be seen; that way there is nothing to compare. Where a block comes
     twice, two halves may make one reading that is as it should be.
@@ -544,7 +546,7 @@ def test_what_is_lost_of_a_damaged_log_is_told_and_the_rest_is_right(
     good = read_log([path])
     written = {tuple(row) for row in good.readings.tolist()}
     read = 0
-    for seed in range(40):
+    for seed in range(25):
         path.write_bytes(damaged(content, way, np.random.default_rng(seed), HEADERS[kind]))
         try:
             recording = read_log([path])
@@ -568,7 +570,7 @@ def test_what_is_lost_of_a_damaged_log_is_told_and_the_rest_is_right(
             assert ("is truncated" in remark) == (way == "truncate")
             assert len(remark) < LONGEST
         assert len(rows) > 0.7 * len(written) or way == "truncate"
-    assert read > 10 or way == "double"
+    assert read > 5 or way == "double"
     assert capfd.readouterr() == ("", "")
 
 
@@ -645,6 +647,20 @@ def test_a_ulog_that_is_all_beginnings_is_given_up() -> None:
     content = formats("a:uint16_t[7] x;") + b"\x01" + b"\x10\x00D\x00\x00\x01" * 200_000
     with pytest.raises(ValueError, match="damaged in too many places to be read"):
         read_ulog(content, {"a"})
+
+
+def test_a_ulog_with_damage_in_every_message_is_given_up() -> None:
+    """Each search for where reading goes on ends at once, and there are a hundred thousand."""
+    content = formats("a:uint16_t[7] x;") + b"\x02\x00A\x00\x00" * 100_000 + b"\x04\x00A\x00\x00\x00b--" * 100_000
+    with pytest.raises(ValueError, match="damaged in too many places to be read"):
+        read_ulog(content, {"a"})
+
+
+def test_cut_messages_one_behind_the_other_are_no_ladder() -> None:
+    """Whether the log ends at one of them is not asked of the next."""
+    rung = b"\x10\x00D\x00\x00" + bytes(14) + b"\xff\x3fR"
+    found = read_ulog(formats("a:uint16_t[7] x;") + rung * 600, {"a"})
+    assert found.damage
 
 
 @pytest.mark.parametrize("size", [0, 1, 2, 3, 255])

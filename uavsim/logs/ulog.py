@@ -43,8 +43,9 @@ MOST_SUBSCRIPTIONS = 10_000  # PX4 has some hundreds
 MOST_PADDING = 64  # B at the end of a message; PX4 has up to 7
 DEEPEST = 8  # of formats within formats
 APPENDED = 0x01  # the only flag that need be understood
-WINDOW = 2**20  # B that are searched at once for where reading goes on
-EFFORT, FAILED = 10, 100  # B that may be looked at for each of the log; what a place costs that reading cannot go on at
+NEAR, FAR = 2**8, 2**20  # B that are searched at once for where reading goes on: few at first, then twice as many
+EFFORT = 10, 10**7  # what a search may cost for each byte of the log, and besides
+SEARCH, FAILED = 2000, 100  # what a search costs, and a place at which reading cannot go on after all
 DATA, DEFINES, SUBSCRIBES, FLAGS, SYNC = b"DFABS"
 LONGEST = {DEFINES: 2**14, SUBSCRIBES: 300}  # B; other kinds of PX4's messages have up to some hundreds
 LONGEST_OTHER = 2**14
@@ -157,7 +158,7 @@ class _Scan:
         self._sizes = np.ones((2, 2**16), np.int64)  # least and most of data of a number, B; none is known
         self._sizes[1] = 0
         self._appended: list[int] = []
-        self._effort = EFFORT * len(content) + 10**7
+        self._effort = EFFORT[0] * len(content) + EFFORT[1]
 
     def run(self) -> None:
         """Go through all of it, the parts that were appended one after the other."""
@@ -211,32 +212,42 @@ class _Scan:
         known = self._known.get(_NUMBER(self.content, at + 3)[0])
         return known is not None and known.layout.itemsize <= size - 2 <= known.padded
 
-    def _is_end(self, at: int, stop: int) -> bool:
-        """Whether the log ends at a place, or within a message that begins there."""
+    def _is_cut(self, at: int, stop: int) -> bool:
+        """Whether it looks as if the log ended at a place, or within a message that begins there."""
         if at + 5 > stop:
             return True
         size, kind = _HEAD(self.content, at)
         if at + 3 + size <= stop or size > LONGEST.get(kind, LONGEST_OTHER):
             return False
-        return (self._is_data(at, size) if kind == DATA else kind in BODIES) and self._next(at + 1, stop) == stop
+        return self._is_data(at, size) if kind == DATA else kind in BODIES
+
+    def _is_end(self, at: int, stop: int) -> bool:
+        """Whether the log ends there: reading goes on nowhere behind."""
+        return self._is_cut(at, stop) and self._next(at + 1, stop) == stop
 
     def _next(self, at: int, stop: int) -> int:
         """Where reading goes on after damage, or the end."""
+        self._spend(SEARCH)
         for place in self._candidates(at, stop):
             end = self._end(place, stop)
             strong = end and self.content[place + 2] in (DEFINES, SUBSCRIBES)
-            if strong or (end and (self._end(end, stop) or self._is_end(end, stop))):
+            if strong or (end and (self._end(end, stop) or self._is_cut(end, stop))):
                 return place
-            self._effort -= FAILED + _HEAD(self.content, place)[0]
-            if self._effort < 0:
-                raise ValueError("a ULog that is damaged in too many places to be read")
+            self._spend(FAILED + _HEAD(self.content, place)[0])
         return stop
+
+    def _spend(self, cost: int) -> None:
+        """Give up a log in which reading goes on at too many places, or could but does not."""
+        self._effort -= cost
+        if self._effort < 0:
+            raise ValueError("a ULog that is damaged in too many places to be read")
 
     def _candidates(self, at: int, stop: int) -> Iterator[int]:
         """Places that look like data of a known number, a definition, a subscription or a mark."""
         least, most = self._sizes
-        for start in range(at, stop - 5, WINDOW):
-            here = np.frombuffer(self.content[start : min(start + WINDOW + 5, stop)], np.uint8).astype(np.int64)
+        start, window = at, NEAR
+        while start < stop - 5:
+            here = np.frombuffer(self.content[start : min(start + window + 5, stop)], np.uint8).astype(np.int64)
             size, kind = here[:-5] | here[1:-4] << 8, here[2:-3]
             number = here[3:-2] | here[4:-1] << 8
             found = (kind == DATA) & (least[number] <= size - 2) & (size - 2 <= most[number])
@@ -244,6 +255,7 @@ class _Scan:
             found |= (kind == SUBSCRIBES) & (size <= LONGEST[SUBSCRIBES]) & (size > 3)
             found |= (kind == SYNC) & (size == len(MARK))
             yield from (np.flatnonzero(found) + start).tolist()
+            start, window = start + window, min(2 * window, FAR)
 
     # -- definitions -------------------------------------------------------------------------------------------------
 
