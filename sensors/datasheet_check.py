@@ -72,8 +72,8 @@ def _check_keys(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool
     """Name all keys that are missing, and those that are unknown."""
     places = list(_places(sheet, rules, pressure=pressure))
     missing = [f"{p.prefix}{key}{p.where}" for p in places for key in p.wanted if key not in p.found]
-    unknown = [_unknown(p.prefix, key, p.allowed) for p in places for key in p.found if key not in p.allowed]
-    said = unknown[:TOLD]
+    unknown = [(p.prefix, key, p.allowed) for p in places for key in p.found if key not in p.allowed]
+    said = [_unknown(*each) for each in unknown[:TOLD]]
     if len(unknown) > TOLD:
         said.append(f"{len(unknown) - TOLD} more keys are unknown")
     if missing:

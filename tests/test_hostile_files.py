@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from mutations import mutated, written
 
 import uavsim
-from sensors import Accelerometer, Streams, data_files, presets
+from sensors import Accelerometer, Streams, data_files, datasheet_check, presets
 from sensors.accelerometer_description import AccelerometerDescription, AccelerometerErrors
 from sensors.catalogue import preset, sheet
 from sensors.choice import nearest
@@ -273,6 +273,21 @@ def test_all_missing_and_unknown_keys_are_named_in_one_line() -> None:
     )
 
 
+def test_of_many_unknown_keys_a_few_are_looked_up_and_the_others_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_up: list[str] = []
+
+    def counted(given_: str, known: Any, cutoff: float) -> str:
+        looked_up.append(given_)
+        return "x"
+
+    monkeypatch.setattr(datasheet_check, "nearest", counted)
+    part = sheet("bmp390")
+    part["values"] |= {f"k{i}": 1 for i in range(5000)}
+    with pytest.raises(ValueError, match=r"'values.k2' is unknown; nearest: values.x; 4997 more keys are unknown$"):
+        check(part)
+    assert looked_up == ["k0", "k1", "k2"]
+
+
 NONSENSE = [
     ("adxl345", "rates", 1e9), ("adxl345", "rates", 1e-6), ("adxl345", "noise_density_ug", 1e15),
     ("adxl345", "noise_density_ug", -1.0), ("adxl345", "noise_density_ug", math.nan), ("adxl345", "ranges_g", 1e-3),
@@ -374,7 +389,9 @@ def settings_of(file: Path, draw: random.Random) -> list[str]:
     """Choose a preset of one's own at one of its settings."""
     part = preset(str(file))
     if isinstance(part, AccelerometerDescription):
+        low_pass = tomli_w.dumps({"f": draw.choice(part.filters)}).removeprefix("f = ")
         chosen = {"range_g": draw.choice(part.ranges_g), "rate": draw.choice(part.rates), "preset": file}
+        chosen |= {"filter": low_pass} if draw.random() < 0.5 else {}
         return [*(f"accelerometer.{key}={value}" for key, value in chosen.items()), "detector.threshold=15"]
     mode = tomli_w.dumps({"m": draw.choice(part.modes).name}).removeprefix("m = ")
     chosen = {"mode": mode, "iir": draw.choice(part.iir_weights)[0], "preset": file}
