@@ -48,7 +48,7 @@ from invariants import (
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.majority import Majority
-from uavsim.onboard.airspeed.spikes import Spikes
+from uavsim.onboard.airspeed.spikes import JUMPED, LEFT_OUT, TAKEN, Spikes
 from uavsim.onboard.flight_computer import MOST_EVENTS, FlightComputer, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings, Kind, MultiLevelWindow
 from uavsim.onboard.stamps import AGREED, JUMP, LATEST, Conversions, Stamps, jump
@@ -519,13 +519,10 @@ def test_a_conversion_clock_that_is_set_back_is_believed() -> None:
 
 
 def test_a_sudden_pressure_is_left_out_until_five_agree() -> None:
-    spikes, last, found = Spikes(), NAN, []
-    for value in [100.0, 900.0, 101.0, *[900.0] * 4, 102.0, *[900.0, 901.0] * 5]:
-        if abs(value - last) <= 50.0 or spikes.believe(value, last, 50.0):
-            last = value
-            found.append(value)
-    assert found[:3] == [100.0, 101.0, 102.0]
-    assert found[3:] == [900.0, 901.0, 900.0, 901.0, 900.0, 901.0]
+    spikes = Spikes()
+    values = [1e4, 9e4, 1.01e4, *[9e4] * 4, NAN, 1.02e4, *[9e4, 9.01e4] * 5]
+    found = [spikes.take(value, 500.0) for value in values]
+    assert found == [TAKEN, LEFT_OUT, TAKEN, *[LEFT_OUT] * 5, TAKEN, *[LEFT_OUT] * 4, JUMPED, *[TAKEN] * 5]
 
 
 @pytest.mark.parametrize("wrong", [1, 40, 49])

@@ -42,7 +42,7 @@ from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
-from uavsim.onboard.airspeed.spikes import Spikes
+from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
 from uavsim.onboard.plausible import (
     FASTEST,
@@ -110,9 +110,9 @@ class AidedFilter:
         "_apart", "_density", "_either", "_fastest", "_flight_force", "_folded", "_force", "_gained", "_gas", "_ground",
         "_gust", "_gust_falls", "_heat", "_lift", "_longest", "_measured", "_misses", "_noise", "_on_rail", "_patience",
         "_push", "_push_variance", "_raw_scale", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_settled",
-        "_stamps", "_static_age", "_static_ends", "_static_last", "_static_seen", "_static_spikes", "_static_variance",
+        "_stamps", "_static_age", "_static_ends", "_static_seen", "_static_spikes", "_static_variance",
         "_steady_from", "_steps", "_sudden", "_t", "_tare", "_tare_end", "_temperature", "_temperature_share", "_torn",
-        "_total_age", "_total_ends", "_total_last", "_total_seen", "_total_spikes", "_total_variance", "_turning", "_u",
+        "_total_age", "_total_ends", "_total_seen", "_total_spikes", "_total_variance", "_turning", "_u",
         "_usual", "_w", "_waiting", "_wind", "energy", "flying", "news", "static_watch", "time", "watch",
     )  # fmt: skip
 
@@ -144,7 +144,6 @@ class AidedFilter:
         sd = sqrt(max(self._total_variance, self._static_variance))
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
-        self._total_last = self._static_last = nan
         self._torn = self._either = False
         self.flying = self._apart = False
         self._steps, self._read = 0, -inf
@@ -206,11 +205,14 @@ class AidedFilter:
         return -BEYOND < energy.v < BEYOND and THINNEST < energy.p < THICKEST and energy.vv > 0.0 and energy.pp > 0.0
 
     def _fall_back(self, t: float, kind: str) -> None:
-        """From here on go by the pressures alone: the force is of no flight, or of another time."""
+        """From here on go by the pressures alone, both ports believed: the force is of no flight or another time."""
         self.flying = False
         self._total_seen = self._static_seen = None
-        self._waiting.resume(self._total_last, self._static_last, self._sudden)
+        self._waiting.resume(self._total_spikes.last, self._static_spikes.last, self._sudden)
         self._tell_of(t, "airspeed_fault", "both", kind)
+        for watch, channel in ((self.watch, "total"), (self.static_watch, "static")):
+            if watch.faulty:
+                self._tell_of(t, "airspeed_recovered", channel)
 
     def _tell_of(self, t: float, event: str, channel: str, kind: str = "") -> None:
         """Put something into the news."""
@@ -248,9 +250,6 @@ class AidedFilter:
         )
         core.bs, core.ss = 0.0, 0.5 * aided.slope_rate**2 * aided.slope_time
         self.energy, self._wind, self._folded = core, 0.0, (inf, inf, 0.0)
-        for watch, channel in ((self.watch, "total"), (self.static_watch, "static")):
-            if watch.faulty:
-                self._tell_of(t, "airspeed_recovered", channel)
         self._start(t - OLDEST, -inf, t + STEADY)
         self._apart = False
         self._tell_of(t, "airspeed_recovered", "both")
@@ -264,7 +263,8 @@ class AidedFilter:
         self._settled, self._patience, self._push_variance = False, patience, 0.0
         self._steady_from = steady_from
         self._misses, self._torn, self._either = 0, False, False
-        self._total_last = self._static_last = nan
+        self._total_spikes.forget()
+        self._static_spikes.forget()
         self._begin_watch()
         self._total_ends.forget()
         self._static_ends.forget()
@@ -387,51 +387,29 @@ class AidedFilter:
         self._density = energy.p / self._gas
         if self._gust_falls:
             self._gust = gust_density(self._settings.aided, (self._ground - energy.p) / (GRAVITY * self._density))
-        total_read, static_read = (
-            LEAST_PRESSURE <= p_total <= MOST_PRESSURE, LEAST_PRESSURE <= p_static <= MOST_PRESSURE,
-        )  # fmt: skip
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
-        if total_read and not -reach <= p_total - self._total_last <= reach:
-            total_read = self._total_jumps(p_total, reach)
-        if static_read and not -reach <= p_static - self._static_last <= reach:
-            static_read = self._static_jumps(p_static, reach)
-        if total_read:
-            self._total_last = p_total
-        if static_read:
-            self._static_last = p_static
+        total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
+        if JUMPED in (total, static):
+            self._jump(total, static)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
-        nis_total, nis_static = self._take(
-            p_total, p_static, end_total, end_static, total_read and end_total == end_total,
-            static_read and end_static == end_static,
-        )  # fmt: skip
+        new_total, new_static = end_total == end_total and total, end_static == end_static and static
+        nis_total, nis_static = self._take(p_total, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
-        if total_read and static_read and temperature > 0.0:  # as `airdata.compressible_airspeed`
+        if total and static and temperature > 0.0:  # as `airdata.compressible_airspeed`
             excess = (p_total - self._tare - p_static) / p_static
             raw = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess))) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
-    def _total_jumps(self, reading: float, reach: float) -> bool:
-        """Whether a sudden total pressure is no spike: it is taken for what it is, and the port is flagged."""
-        if not self._total_spikes.believe(reading, self._total_last, reach):
-            return False
-        self._either = self._total_last == self._total_last
-        if self._watched(self._total_last) and not (self.watch.faulty or self.static_watch.faulty):
+    def _jump(self, total: int, static: int) -> None:
+        """A pressure has jumped: it is taken for what it is, and once the ports are watched its port is flagged."""
+        self._either = True
+        if not self.time > self._steady_from:
+            return
+        if static == JUMPED and not self.static_watch.faulty:
+            self._flag_static("jump")
+        if total == JUMPED and not (self.watch.faulty or self.static_watch.faulty):
             self.watch.flag("jump", self.energy, self._density, self._gust)
             self._tell_of(self._t, "airspeed_fault", "total", "jump")
-        return True
-
-    def _watched(self, last: float) -> bool:
-        """Whether the ports are watched and a pressure has been read before."""
-        return self.time > self._steady_from and last == last
-
-    def _static_jumps(self, reading: float, reach: float) -> bool:
-        """Whether a sudden static pressure is no spike; see `_total_jumps`."""
-        if not self._static_spikes.believe(reading, self._static_last, reach):
-            return False
-        self._either = self._static_last == self._static_last
-        if self._watched(self._static_last) and not self.static_watch.faulty:
-            self._flag_static("jump")
-        return True
 
     def _take(
         self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
