@@ -473,12 +473,11 @@ def with_faults(draw: random.Random, tree: dict[str, Any]) -> None:
             group["faults"] = [{**when, **fault}] * count
 
 
-# What the estimator believes is not among them: how it bears absurd beliefs is a matter of its own tests.
 BOUNDED = sorted(
     key
     for key in keys()
     if get_origin(hint_of(Scenario, key)) is Annotated and get_args(hint_of(Scenario, key))[0] in (int, float)
-    and not key.startswith(("estimator.", "mismatch.", "duration"))
+    and key != "duration"
 )  # fmt: skip
 LONGEST_RUN = 20.0  # s
 
