@@ -60,9 +60,8 @@ def brief(text: str, most: int = LONGEST_NAME) -> str:
     return text if len(text) <= most else f"{text[:most]}…"
 
 
-def _check_rows(rows: int, least: str = "") -> None:
-    if rows > MOST_ROWS:
-        raise ValueError(f"has {least}{rows if not least else MOST_ROWS} rows; at most {MOST_ROWS} are read")
+def _too_many(rows: str) -> ValueError:
+    return ValueError(f"has {rows} rows; at most {MOST_ROWS} are read")
 
 
 # -- CSV -------------------------------------------------------------------------------------------------------------
@@ -94,7 +93,8 @@ class CsvTable:
         with _csv_understood(), self._held.open() as file:
             for piece in self._csv(file, chunksize=max(1, CELLS // len(self.names))):
                 rows += len(piece)
-                _check_rows(rows, "more than ")
+                if rows > MOST_ROWS:
+                    raise _too_many(f"more than {MOST_ROWS}")
                 for name, values in parts.items():
                     values.append(_numbers(piece.iloc[:, self.names.index(name)]))
         return {name: np.concatenate(values) if values else np.empty(0) for name, values in parts.items()}
@@ -197,7 +197,8 @@ class ParquetTable:
             columns = file.metadata.num_columns
             if columns > MOST_COLUMNS:
                 raise ValueError(f"has {columns} columns; at most {MOST_COLUMNS} are read")
-            _check_rows(file.metadata.num_rows)
+            if file.metadata.num_rows > MOST_ROWS:
+                raise _too_many(str(file.metadata.num_rows))
             self._schema = file.schema_arrow
             self.names: tuple[str, ...] = tuple(self._schema.names)
 
@@ -231,7 +232,8 @@ class ParquetTable:
             rows = 0
             for batch in file.iter_batches(BATCH, columns=list(columns)):
                 rows += batch.num_rows
-                _check_rows(rows, "more than ")
+                if rows > MOST_ROWS:
+                    raise _too_many(f"more than {MOST_ROWS}")
                 yield batch
 
     def _is_written(self, name: str) -> bool:

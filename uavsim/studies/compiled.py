@@ -1,4 +1,4 @@
-"""Loops compiled to machine code by numba; plain Python, some thirty times slower, where its JIT is off.
+"""Loops compiled to machine code by numba; plain Python, a hundred times slower, where its JIT is off.
 
 Without the JIT (NUMBA_DISABLE_JIT) the kernels are handed lists of Python's own numbers, with which they run three
 times as fast as with arrays. Where machine code is kept is in `uavsim.studies.machine_code`.

@@ -1,7 +1,7 @@
 """What is within reach where numba's JIT is off, so that `roc` ends in about ten minutes instead of in hours.
 
-Plain Python takes `COST` for a sample and detector, some thirty times what a compiled loop takes. Hours and launches
-beyond `MOST` and `MOST_TRIED` are left out, which is told. What is left gives the same results as with the JIT.
+Plain Python takes `COST` for a sample and detector, a hundred times and more what a compiled loop takes. Hours and
+launches beyond `MOST` and `MOST_TRIED` are left out, which is told. What is left gives what it gives with the JIT.
 """
 
 from dataclasses import dataclass
