@@ -193,6 +193,9 @@ def attacks(victim: Path) -> dict[str, Files]:
     made["doubling functions"] = _functions(40, "<sum><property>{0}</property><property>{0}</property></sum>")
     made["a chain of functions"] = _functions(4000, "<sum><property>{0}</property><value>1</value></sum>")
     made["a force by a path"] = good | {"fw8.xml": main.replace(b'name="push"', b'name="../simulation"', 1)}
+    made["an eyepoint far away"] = good | {"fw8.xml": main.replace(b"<x>0.6</x>", b"<x>1e30</x>", 1)}
+    made["a tank that is not there"] = good | {"fw8.xml": main.replace(b"</engine>", b"<feed>0</feed></engine>", 1)}
+    made["many delays"] = _with(f'<system name="x"><channel name="c">{_DELAYS}</channel></system>')
     made["a long delay"] = _with(f'<system name="x"><channel name="c">{_SLOW}</channel></system>')
     for tag, text in _IMPOSSIBLE.items():
         made[f"impossible {tag} {text}"] = good | {"fw8.xml": _replaced(main, tag, text)}
@@ -265,6 +268,8 @@ _FUNCTIONS = {
     "reads nothing": "<property>no/such-thing</property>",
     "or of a number": "<or><value>7</value><value>1</value></or>",
     "switch out of range": "<switch><value>7</value><value>1</value></switch>",
+    "remainder of 0": "<mod><value>5</value><value>0</value></mod>",
+    "rotation of too little": "<rotation_wf_to_bf>" + "<value>1</value>" * 6 + "</rotation_wf_to_bf>",
     "clock": '<random seed="time_now"/>',
     "nothing": "",
     "interpolation": "<interpolate1d><value>1</value></interpolate1d>",
@@ -279,6 +284,9 @@ _IMPOSSIBLE = {
 }  # fmt: skip
 
 
+_DELAYS = "".join(
+    f'<sensor name="y{k}"><input>fcs/wing-cmd-norm</input><delay type="time">100</delay></sensor>' for k in range(40)
+)
 _SLOW = '<sensor name="y"><input>fcs/wing-cmd-norm</input><delay type="frames">1e12</delay></sensor>'
 
 

@@ -305,7 +305,7 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
         ("fly --set accelerometer.preset=adxl34", "nearest: adxl345"),
         ("fly --set air_data.total.mode=x9/x9", "allowed: x1/x1"),
         ("fly --set aircraft.model=fw9", "did you mean 'fw8'?"),
-        ("fly --set aircraft.model=broken", "aircraft.model: In file"),
+        ("fly --set aircraft.model=broken", "broken.xml: line 1: not well-formed XML"),
         ("fly --set aircraft.properties.NAME=1", "--set: aircraft.properties: 'NAME' is no property of 'fw8'"),
         ("fly --set aircraft.properties.=1", "'' is no property"),
         ("fly --set aircraft.properties.ap/gain/picth=1", "did you mean 'ap/gain/pitch'?"),

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 import os
 import stat
 import subprocess
@@ -17,6 +18,7 @@ import pytest
 from pandas.testing import assert_frame_equal
 
 import uavsim
+from uavsim.cli import main
 from uavsim.cosim import CHUNK, Cosimulation, draw, plant_settings, replay
 from uavsim.flight import UNITS, Flight, load
 from uavsim.plants.jsbsim import JsbsimPlant
@@ -306,3 +308,26 @@ def test_a_record_of_an_older_make_still_loads(folder: Path) -> None:
     flight = load(folder)
     old = Flight({**scenario, "requirements": [{"key": "gone", "maximum": 1.0}]}, flight.tables, flight.events)
     assert replay(old).score["requirements"][0]["met"] is False
+
+
+@pytest.mark.parametrize("t", [[], [0.0], [0.0, 0.0], [0.0, math.nan], [0.0, math.inf], [-1e308, 1e308], [1.0, 0.0]])
+def test_times_of_a_truth_that_are_none(catapult: Flight, tmp_path: Path, t: list[float]) -> None:
+    folder = catapult.save(tmp_path / "flight")
+    table = catapult.truth.iloc[: len(t)].assign(t=t)
+    table.to_parquet(folder / "truth.parquet", index=False)
+    with pytest.raises(ValueError, match=r"truth\.parquet cannot be read: its column t must have at least two times"):
+        load(folder)
+
+
+@pytest.mark.parametrize("name", list(UNITS))
+def test_a_flight_that_lacks_a_table_is_not_replayed(
+    catapult: Flight, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = catapult.save(tmp_path / "flight")
+    (folder / f"{name}.parquet").unlink()
+    monkeypatch.setattr("sys.argv", ["uavsim", "replay", str(folder), "--out", str(tmp_path / "again")])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    assert f"cannot be replayed: {name}.parquet is missing" in capsys.readouterr().err
+    assert not (tmp_path / "again").exists()

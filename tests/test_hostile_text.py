@@ -6,6 +6,7 @@ mathtext of matplotlib, and HTML.
 
 import io
 import sys
+import tempfile
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -194,7 +195,8 @@ def drawn(one: "Figure") -> list[str]:
     """What a figure shows once it is saved: all its text as matplotlib reads it, without a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure.save(one, io.BytesIO())  # type: ignore[arg-type]
+        with tempfile.TemporaryDirectory() as place:
+            figure.save(one, Path(place) / "drawn.png")
     return [as_read(text) for text in figure._texts(one)]
 
 

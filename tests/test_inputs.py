@@ -15,6 +15,8 @@ from sensors.sheet import Sheet
 from uavsim import inputs
 from uavsim.cosim import replay
 from uavsim.flight import load
+from uavsim.plants.airframe import Airframe
+from uavsim.plants.airframe.check import Checked
 from uavsim.plants.hangar import hangar
 from uavsim.scenario import Scenario, load_scenario
 
@@ -144,7 +146,7 @@ def test_tables_that_are_none(tmp_path: Path, table: str) -> None:
         if table[0] == "i"
         else f"aircraft.model = 'inputs/aircraft.model/fw8'\n{table}"
     )
-    with pytest.raises(ValueError, match=r"inputs must be a table|there is no such file"):
+    with pytest.raises(ValueError, match=r"inputs must be a table|is no file of inputs/KEY/"):
         load_scenario(file)
 
 
@@ -152,3 +154,16 @@ def test_value_of_what_is_not_there() -> None:
     assert inputs.value_of({"a": {"b": 3}}, "a.b") == 3
     assert inputs.value_of({"a": 3}, "a.b") is None
     assert inputs.value_of({}, "a.b") is None
+
+
+@pytest.mark.parametrize("name", ["..", ".", "", "bird/..", "bird/../bird"])
+def test_an_aircraft_is_a_name_in_its_folder_and_no_way_out(kept: Path, tmp_path: Path, name: str) -> None:
+    """A record whose aircraft is called `..` would be laid out above the folder for it."""
+    scenario = kept / "scenario.toml"
+    text = scenario.read_text(encoding="utf-8")
+    scenario.write_text(text.replace("inputs/aircraft.model/bird", f"inputs/aircraft.model/{name}"), encoding="utf-8")
+    for read in (load_scenario, load):
+        with pytest.raises(ValueError, match=r"must be inputs/aircraft\.model/ and a name|is no file of inputs/KEY/"):
+            read(kept)
+    with pytest.raises(ValueError, match="is no name of an aircraft"):
+        Airframe(str(tmp_path / ".."), Checked({}, {}, frozenset(), frozenset())).write(tmp_path)

@@ -107,7 +107,10 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
         ("aircraft.model=" + "x" * 5000, "must be text of at most 4096 characters"),
         ("aircraft.properties=1", "must be a group of NAME = number"),
         ("aircraft.properties.inertia/cg-x-in=abc", "aircraft.properties.inertia/cg-x-in = 'abc': must be a number"),
-        ("aircraft.properties.simulation/terminate=1", "is a command to JSBSim itself"),
+        (
+            "aircraft.properties.simulation/terminate=1",
+            "is JSBSim's own, not a property of an aircraft; it may not set simulation/…",
+        ),
         ("name=../../evil", "name = '../../evil': it names a folder"),
         ("name=", "name = '': it names a folder"),
         ("name=.hidden", "it names a folder"),

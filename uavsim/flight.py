@@ -198,10 +198,23 @@ def _read_table(name: str, file: Path) -> "pd.DataFrame":
         table = ParquetTable(look(file))
         missing = [column for column in UNITS[name] if column not in table.names]
         if not missing:
-            return table.frame([column for column in table.names if column in UNITS[name]], texts=("phase",))
+            found = table.frame([column for column in table.names if column in UNITS[name]], texts=("phase",))
+            if name == "truth":
+                _check_clock(found["t"].to_numpy(float))
+            return found
     except ValueError as error:
         raise ValueError(f"{file} cannot be read: {error}") from None
     raise ValueError(f"{file} is not a flight's: the column {missing[0]!r} is missing")
+
+
+def _check_clock(t: "np.ndarray") -> None:
+    """Refuse a truth whose times are none: everything else is looked up by them."""
+    import numpy as np
+
+    if len(t) < 2 or not np.isfinite(t).all() or np.abs(t).max() > LONGEST_TIME or not (np.diff(t) > 0.0).all():
+        raise ValueError(
+            f"its column t must have at least two times, s, that rise from row to row, up to {LONGEST_TIME:g}"
+        )
 
 
 def frame(name: str, columns: "Mapping[str, np.ndarray]") -> "pd.DataFrame":

@@ -95,11 +95,18 @@ def read(folder: Path, scenario: Mapping[str, Any]) -> dict[str, Any]:
     hashes = values.pop(HASHES, {})
     if not isinstance(hashes, Mapping) or not all(isinstance(digest, str) for digest in hashes.values()):
         raise ValueError(f"{HASHES} must be a table of PATH = SHA-256")
+    for path in hashes:
+        if not path.startswith(tuple(f"{FOLDER}/{key}/" for key in KEYS)) or not {"", ".", ".."}.isdisjoint(
+            path.split("/")
+        ):
+            raise ValueError(f"{HASHES}: {path!r} is no file of {FOLDER}/KEY/, KEY one of {', '.join(KEYS)}")
     read_file = _reader(folder.resolve(), hashes)
     for key in KEYS:
         value = value_of(values, key)
         if not isinstance(value, str) or not value.startswith(f"{FOLDER}/{key}/"):
             continue
+        if value != f"{FOLDER}/{key}/{_name(value)}":
+            raise ValueError(f"{key} = {value!r}: must be {FOLDER}/{key}/ and a name")
         if key == AIRCRAFT:
             checked = check_files(PurePosixPath(value).name, _below(value, read_file))
             _put(values, key, Airframe(str(folder / value), checked))
@@ -108,6 +115,12 @@ def read(folder: Path, scenario: Mapping[str, Any]) -> dict[str, Any]:
         else:
             _put(values, key, Sheet(str(folder / value), read_text(folder / value)))
     return values
+
+
+def _name(value: str) -> str:
+    """Last part of a path; empty where it is none that names something."""
+    last = value.rpartition("/")[2]
+    return "" if last in {".", ".."} else last
 
 
 def _below(place: str, read_file: Callable[[str], bytes | None]) -> Callable[[str], bytes | None]:

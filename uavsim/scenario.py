@@ -31,7 +31,7 @@ from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSetti
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.onboard.launch.settings import USES, need, unread
 from uavsim.plants.airframe import Airframe, read_airframe
-from uavsim.plants.airframe.properties import COMMANDS
+from uavsim.plants.airframe.properties import OF_SIMULATOR
 from uavsim.plants.hangar import find_aircraft, hangar
 from uavsim.plants.rig_settings import PlantSettings, length
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
@@ -347,9 +347,11 @@ def _replaced(group: Any, path: list[str], value: Any) -> Any:
 
 def _check_properties(s: Scenario) -> None:
     for name in s.aircraft.properties:
-        if name.startswith(f"{COMMANDS}/"):
+        root = name.strip("/").partition("/")[0].partition("[")[0]
+        if root in OF_SIMULATOR:
             raise SettingError(
-                f"{PROPERTIES}{name}: is a command to JSBSim itself, not a property of an aircraft", PROPERTIES + name
+                f"{PROPERTIES}{name}: is JSBSim's own, not a property of an aircraft; it may not set {root}/…",
+                PROPERTIES + name,
             )
 
 

@@ -286,3 +286,28 @@ def test_a_function_that_fails_in_the_air_ends_the_flight_with_a_reason(tmp_path
     assert "reason: In file fw8/fw8.xml" in done.stdout
     again = replay(uavsim.load(out)).save(tmp_path / "again")
     assert (again / "score.json").read_bytes() == (out / "score.json").read_bytes()
+
+
+def test_what_uavsim_reads_is_no_function_of_the_aircraft(tmp_path: Path) -> None:
+    """What fails in a function that is read from Python ends the process."""
+    function = '<aerodynamics><function name="fcs/wing-pos-norm"><value>1</value></function>'
+    good = hostile.packaged()
+    main = good["fw8.xml"].replace(b"<aerodynamics>", function.encode())
+    folder = hostile.write(good | {"fw8.xml": main}, tmp_path / "fw8")
+    with pytest.raises(ValueError, match="'fcs/wing-pos-norm' is a function, and uavsim reads or sets it"):
+        uavsim.fly("catapult", overrides=[f"aircraft.model={folder}"])
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "atmosphere/updownburst/number-of-cells",
+        "position/h-sl-ft",
+        "ic/h-sl-ft",
+        "/simulation/reset",
+        "forces/hold-down",
+    ],
+)
+def test_a_scenario_sets_no_more_than_an_aircraft(name: str) -> None:
+    with pytest.raises(ValueError, match=r"is JSBSim's own, not a property of an aircraft"):
+        uavsim.fly("catapult", overrides=[f"aircraft.properties.{name}=1e9"])

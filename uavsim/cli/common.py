@@ -162,7 +162,12 @@ class Bar:
 
     def show(self, share: float) -> None:
         """Show that `share`, 0 … 1, is done."""
-        if self._progress is None and sys.stderr.isatty() and monotonic() - self._since > PATIENCE:
+        if (
+            self._progress is None
+            and sys.stderr is not None
+            and sys.stderr.isatty()
+            and monotonic() - self._since > PATIENCE
+        ):
             self._progress = self._start()
         if self._progress is not None:
             self._progress.update(self._progress.task_ids[0], completed=share)

@@ -47,7 +47,7 @@ def _is_flight(path: Path) -> bool:
 
 def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bool) -> None:
     from uavsim.cosim import replay as replay_flight
-    from uavsim.flight import load
+    from uavsim.flight import UNITS, load
     from uavsim.scenario import Scenario
     from uavsim.views import terminal
 
@@ -57,7 +57,7 @@ def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bo
             raise ValueError(f"{flight} holds several flights: give one of the folders in {flight / 'flights'}")
         recorded = load(flight)
         Scenario.from_dict(recorded.scenario, str(flight / "scenario.toml"))
-        missing = [table for table in ("accelerometer", "air_data", "truth") if table not in recorded.tables]
+        missing = [table for table in UNITS if table not in recorded.tables]
         if missing:
             raise ValueError(f"{flight} cannot be replayed: {missing[0]}.parquet is missing")
     with folder(out, name, overwrite=overwrite) as place:  # before anything is replayed in vain

@@ -164,7 +164,9 @@ class JsbsimPlant:
     # -- setting up --------------------------------------------------------------------------------------------------
 
     def _load(self, aircraft: AircraftSettings) -> FGFDMExec:
-        fdm = load_airframe(find_airframe(aircraft.model))
+        airframe = find_airframe(aircraft.model)
+        self._functions = airframe.checked.functions
+        fdm = load_airframe(airframe)
         fdm.set_dt(self.dt)
         for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
             fdm.set_property_value(f"simulation/integrator/{name}/rotational", 3.0)
@@ -174,6 +176,11 @@ class JsbsimPlant:
         if name not in self._catalogue:
             raise ValueError(
                 f"aircraft.model: {self.settings.aircraft.model!r} lacks the property {name!r} that uavsim needs"
+            )
+        if name in self._functions:  # what fails in one that is read from Python ends the process
+            raise ValueError(
+                f"aircraft.model: {self.settings.aircraft.model}: {name!r} is a function, and uavsim reads or sets it: "
+                "make it the output of a component"
             )
         node = self._fdm.get_property_manager().get_node(name)
         assert node is not None, name  # it is in the catalogue
@@ -444,7 +451,8 @@ class JsbsimPlant:
         raw["east"] = raw["east"] - self._datum[INDEX["east"]] * FT
         raw["rail_s"] = self._travel(raw)
         raw["heading"] = _continuous(raw["heading"])
-        raw["p_total"] = airdata.isentropic_total(raw["p_static"], raw["mach"], np)  # unchecked: it may have diverged
+        with np.errstate(all="ignore"):  # unchecked: it may have diverged
+            raw["p_total"] = airdata.isentropic_total(raw["p_static"], raw["mach"], np)
         return raw
 
     def _travel(self, c: dict[str, Array]) -> Array:

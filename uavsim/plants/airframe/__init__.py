@@ -50,6 +50,8 @@ class Airframe(str):
     def write(self, folder: Path) -> Path:
         """Write the files into a folder that there is; return that of the aircraft in it."""
         place = folder / self.name
+        if not self.name or self.name == "..":
+            raise ValueError(f"aircraft.model = {str(self)!r}: is no name of an aircraft")
         for path, content in self.checked.files.items():
             (place / path).parent.mkdir(parents=True, exist_ok=True)
             (place / path).write_bytes(content)

@@ -39,6 +39,11 @@ class Calls:
             self._reads[name] = [plain(part.text) for part in parts if part.tag in _READING]
             self._elements[name] = len(parts)
 
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of all of them."""
+        return frozenset(self._reads)
+
     def check(self) -> None:
         """Refuse functions that need themselves, too many others, or too much work; ValueError names one."""
         known: dict[str, tuple[int, int]] = {}

@@ -10,12 +10,14 @@ from dataclasses import dataclass
 from uavsim.plants.airframe import figures
 from uavsim.plants.airframe.calls import Calls
 from uavsim.plants.airframe.document import check_document
-from uavsim.plants.airframe.engines import check_engine
+from uavsim.plants.airframe.engines import check_engine, check_feeds
 from uavsim.plants.airframe.grammar import ENGINES, THRUSTERS
 from uavsim.plants.airframe.markup import Element, in_file, parse
 from uavsim.plants.airframe.properties import plain
+from uavsim.plants.airframe.tables import number
 
 MOST_FILES = 100
+MOST_DELAY = 100.0  # s of all components: JSBSim keeps a value a step of each
 MOST_ELEMENTS = 40_000  # of all files: what a step costs grows with them
 
 Reader = Callable[[str], bytes | None]
@@ -45,11 +47,14 @@ class Checked:
         The properties that they read, each with a file and line.
     early
         Those of them that JSBSim wants to be there while it reads the files, in whatever order.
+    functions
+        The properties that are worked out by functions and tables of the aircraft.
     """
 
     files: dict[str, bytes]
     reads: dict[str, str]
     early: frozenset[str]
+    functions: frozenset[str]
 
 
 def check_files(name: str, read: Reader) -> Checked:
@@ -72,7 +77,7 @@ def check_files(name: str, read: Reader) -> Checked:
     early: set[str] = set()
     calls = Calls()
     waiting = [(f"{name}.xml", frozenset({"fdm_config"}))]
-    elements = 0
+    elements, delays = 0, 0.0
     while waiting:
         path, roots = waiting.pop()
         if path in files:
@@ -89,10 +94,13 @@ def check_files(name: str, read: Reader) -> Checked:
                 raise ValueError(f"more than {MOST_FILES} files or {MOST_ELEMENTS} elements in all")
             early |= {plain(element.text) for element in root.all() if element.tag in _EARLY}
             calls.add(root)
+            delays += sum(_delay(element) for element in root.all() if element.tag == "delay")
+            if delays > MOST_DELAY:
+                raise ValueError(f"delays of {delays:.4g} s in all; up to {MOST_DELAY:g} are allowed")
             waiting += [(_place(element, read), _ROOTS[element.tag]) for element in root.all() if _names(element)]
     with in_file(f"{name}.xml"):
         calls.check()
-    return Checked(files, reads, frozenset(early))
+    return Checked(files, reads, frozenset(early), calls.names)
 
 
 def _checked(content: bytes, roots: frozenset[str], *, is_named: bool) -> tuple[Element, dict[str, int]]:
@@ -102,9 +110,19 @@ def _checked(content: bytes, roots: frozenset[str], *, is_named: bool) -> tuple[
     reads = check_document(root, is_named=is_named)
     check_engine(root)
     if root.tag == "fdm_config":
+        if (propulsion := root.find("propulsion")) is not None:
+            check_feeds(propulsion)
+        figures.check_places(root)
         figures.check_metrics(_only(root, "metrics"))
         figures.check_mass(_only(root, "mass_balance"))
     return root, reads
+
+
+def _delay(element: Element) -> float:
+    """Delay of a component, s; a frame is a step of 1 ms."""
+    value = number(element.text)
+    assert value is not None  # the grammar has seen to it
+    return value if element.attributes.get("type") == "time" else 1e-3 * value
 
 
 def _only(root: Element, tag: str) -> Element:

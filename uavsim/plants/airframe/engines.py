@@ -12,6 +12,17 @@ _ALSO = {("turbine_engine", "augmented"): "AugThrust", ("turbine_engine", "injec
 """What is needed besides where a switch is on."""
 
 
+def check_feeds(propulsion: Element) -> None:
+    """Refuse an engine that is fed by a tank that is not there."""
+    tanks = sum(child.tag == "tank" for child in propulsion.children)
+    for engine in propulsion.children:
+        for feed in engine.children:
+            if feed.tag == "feed" and int(feed.text) >= tanks:
+                raise MarkupError(
+                    f"<feed>: there is no tank {feed.text}; there are {tanks}, numbered from 0", feed.line
+                )
+
+
 def check_engine(root: Element) -> None:
     """Refuse an engine or a thruster that lacks one."""
     held = {child.attributes.get("name") for child in root.children if child.tag in {"table", "function"}}

@@ -29,6 +29,15 @@ REACH = 100.0  # m, beyond which no part of an aircraft lies
 ROUNDING = 0.02  # of the sum, by which two moments may fall short of the third: figures are rounded
 
 
+def check_places(root: Element) -> None:
+    """Refuse a part that lies beyond `REACH`."""
+    for place in root.all():
+        if place.tag in {"location", "drain_location"}:
+            inches = {"unit": place.attributes.get("unit", "IN")}
+            for axis in place.children:
+                _bounded(axis, _si(Element(axis.tag, inches, axis.line, text=axis.text), LENGTH), -REACH, REACH, "m")
+
+
 def check_metrics(metrics: Element) -> None:
     """Refuse sizes that cannot be."""
     for tag, (unit, least, greatest, shown) in METRICS.items():

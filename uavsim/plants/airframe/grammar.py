@@ -71,7 +71,7 @@ class Rule:
 Attributes = Mapping[str, Text | Collection[str]]
 
 UNITS: Mapping[str, str] = {
-    "length": "M FT IN KM",
+    "length": "M FT IN",
     "area": "M2 FT2",
     "volume": "M3 FT3 IN3 CC LTR",
     "angle": "RAD DEG",
@@ -152,13 +152,11 @@ OPERATIONS: Mapping[str, tuple[int, int]] = {
         ),
         (1, 1),
     ),
-    **dict.fromkeys(words("quotient pow atan2 mod fmod lt le gt ge eq nq roundmultiple"), (2, 2)),
+    **dict.fromkeys(words("quotient pow atan2 fmod lt le gt ge eq nq roundmultiple"), (2, 2)),
     "ifthen": (3, 3),
     "switch": (2, 200),
-    **dict.fromkeys(
-        words("rotation_alpha_local rotation_beta_local rotation_gamma_local rotation_bf_to_wf rotation_wf_to_bf"),
-        (6, 8),
-    ),
+    **dict.fromkeys(words("rotation_alpha_local rotation_beta_local rotation_gamma_local"), (6, 6)),
+    **dict.fromkeys(words("rotation_bf_to_wf rotation_wf_to_bf"), (7, 7)),
     **dict.fromkeys(words("pi random urandom"), (0, 0)),
 }
 """Operations of a function, with the least and the greatest number of operands that each takes."""
@@ -385,7 +383,7 @@ RULES |= {
     "rotor": _machine(
         "diameter numblades gearratio nominalrpm minrpm maxrpm chord liftcurveslope twist hingeoffset flappingmoment "
         "massmoment polarmoment inflowlag tiplossfactor maxbrakepower gearloss gearmoment",
-        "controlmap=word ExternalRPM=whole groundeffect",
+        "controlmap=word groundeffect",
     ),
     "groundeffect": Rule(children=_all("groundeffectexp groundeffectshift", "number")),
 }

@@ -46,8 +46,6 @@ TAKEN = {
 FUNCTIONS = words("aero ap buoyant_forces fcs hydro systems")
 """Those of JSBSim's own roots under which an aircraft's functions and tables may be filed."""
 
-COMMANDS = "simulation"  # the root under which JSBSim takes commands to itself
-
 _PART = r"[A-Za-z_][A-Za-z0-9_.-]*(?:\[(?:[0-9]{1,4}|#)\])?"  # neither '.' nor '..' begins with a letter
 _PATH = re.compile(rf"/?{_PART}(?:/{_PART})*")
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_ .-]*")
