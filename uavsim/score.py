@@ -187,6 +187,11 @@ class Judged:
 
 def score(flight: Judged) -> dict[str, Any]:
     """Judge a flight; keys, units and meanings as in `docs/score.md`."""
+    with np.errstate(over="ignore", invalid="ignore"):  # a flight that diverged may hold any number
+        return _score(flight)
+
+
+def _score(flight: Judged) -> dict[str, Any]:
     launch = _launch(flight)
     airspeed = _airspeed(flight)
     result: dict[str, Any] = {
