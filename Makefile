@@ -9,7 +9,7 @@ PIP    := PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_CONSTRAINT=$(CURDIR)/constraints.t
 help:
 	@echo "make fly       install, then fly the scenario 'catapult' with its score and plots"
 	@echo "make test      every check and test (ruff, mypy, import-linter, pytest)"
-	@echo "make validate  the statistical checks over many seeds (15 minutes)"
+	@echo "make validate  the statistical checks over many seeds, and the long attacks (over half an hour)"
 	@echo "make bench     what a step costs"
 	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 (installs AeroSandbox)"
 	@echo "make clean     remove the environment and caches"

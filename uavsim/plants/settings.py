@@ -13,9 +13,10 @@ class AircraftSettings:
     Attributes
     ----------
     model
-        Name of a folder of ``aircraft/``, or the path of such a folder.
+        Name of a folder of ``aircraft/``, or the path of such a folder, whose files are checked (SECURITY.md).
     properties
-        JSBSim properties that are written once before the flight, in JSBSim's own units.
+        JSBSim properties of the aircraft that are written once before the flight, in JSBSim's own units; not those of
+        the air, the place, the motion or the simulator.
     """
 
     model: str = "fw8"
