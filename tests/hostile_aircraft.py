@@ -196,6 +196,8 @@ def attacks(victim: Path) -> dict[str, Files]:
     made["an eyepoint far away"] = good | {"fw8.xml": main.replace(b"<x>0.6</x>", b"<x>1e30</x>", 1)}
     made["a tank that is not there"] = good | {"fw8.xml": main.replace(b"</engine>", b"<feed>0</feed></engine>", 1)}
     made["many delays"] = _with(f'<system name="x"><channel name="c">{_DELAYS}</channel></system>')
+    made["an engine for a thruster"] = good | {"fw8.xml": main.replace(b'"fw8_propeller"', b'"fw8_motor"', 1)}
+    made["itself for a system"] = good | {"fw8.xml": main.replace(b'<system file="wing"/>', b'<system file="fw8"/>', 1)}
     made["a long delay"] = _with(f'<system name="x"><channel name="c">{_SLOW}</channel></system>')
     for tag, text in _IMPOSSIBLE.items():
         made[f"impossible {tag} {text}"] = good | {"fw8.xml": _replaced(main, tag, text)}

@@ -73,6 +73,7 @@ def check_files(name: str, read: Reader) -> Checked:
         One line that names file, line, element and what is allowed.
     """
     files: dict[str, bytes] = {}
+    tags: dict[str, str] = {}
     reads: dict[str, str] = {}
     early: set[str] = set()
     calls = Calls()
@@ -80,14 +81,15 @@ def check_files(name: str, read: Reader) -> Checked:
     elements, delays = 0, 0.0
     while waiting:
         path, roots = waiting.pop()
-        if path in files:
+        if path in tags:
+            _check_root(path, tags[path], roots)  # named twice, perhaps for another part
             continue
         content = read(path)
         if content is None:
             raise ValueError(f"{path}: there is no such file")
         with in_file(path):
             root, read_here = _checked(content, roots, is_named=bool(files))
-            files[path] = content
+            files[path], tags[path] = content, root.tag
             reads = {property_: f"{path}: line {line}" for property_, line in read_here.items()} | reads
             elements += sum(1 for _ in root.all())
             if len(files) > MOST_FILES or elements > MOST_ELEMENTS:
@@ -105,8 +107,7 @@ def check_files(name: str, read: Reader) -> Checked:
 
 def _checked(content: bytes, roots: frozenset[str], *, is_named: bool) -> tuple[Element, dict[str, int]]:
     root = parse(content)
-    if root.tag not in roots:
-        raise ValueError(f"line {root.line}: <{root.tag[:40]}>: must be <{'> or <'.join(sorted(roots))}>")
+    _check_root(f"line {root.line}", root.tag, roots)
     reads = check_document(root, is_named=is_named)
     check_engine(root)
     if root.tag == "fdm_config":
@@ -116,6 +117,12 @@ def _checked(content: bytes, roots: frozenset[str], *, is_named: bool) -> tuple[
         figures.check_metrics(_only(root, "metrics"))
         figures.check_mass(_only(root, "mass_balance"))
     return root, reads
+
+
+def _check_root(where: str, tag: str, roots: frozenset[str]) -> None:
+    """Refuse a file that holds something else than the part that it is named for."""
+    if tag not in roots:
+        raise ValueError(f"{where}: <{tag[:40]}>: must be <{'> or <'.join(sorted(roots))}>")
 
 
 def _delay(element: Element) -> float:
