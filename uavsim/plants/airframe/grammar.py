@@ -2,7 +2,7 @@
 
 JSBSim's language describes an aircraft, and it also opens files and sockets, runs scripts and stops the simulator.
 This is the list of what describes: each element with its attributes, what may stand in it and what must. What is not
-on the list is refused, whatever it would do. It was made from the 64 aircraft, 80 engines and 100 systems that come
+on the list is refused, whatever it would do. It was made from the 60 aircraft, 80 engines and 100 systems that come
 with JSBSim 1.3.3; a test reads them all against it.
 
 A rule's children are names of other rules; ``axis=force_axis`` is an ``axis`` that follows the rule ``force_axis``.
