@@ -530,3 +530,14 @@ def test_progress_is_shown_on_a_terminal_to_those_who_wait(
     out, err = capsys.readouterr()
     assert out == ""
     assert ("flying" in err) is shown
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a shell that closes standard error")
+def test_a_flight_needs_no_standard_error(tmp_path: Path) -> None:
+    command = (
+        f"exec {sys.executable} -m uavsim.cli fly catapult --no-plots --set duration=12 --out {tmp_path}/here 2>&-"
+    )
+    done = subprocess.run(["sh", "-c", command], stdout=subprocess.PIPE, text=True, check=False)
+    assert done.returncode in {0, 1}  # as it went
+    assert f"written to {tmp_path}/here" in done.stdout
+    assert (tmp_path / "here" / "score.json").is_file()
