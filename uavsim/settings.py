@@ -274,7 +274,9 @@ def _allowed(hint: Any) -> str:
         return _listed([_allowed(member) for member in members if member is not type(None)])
     if origin is tuple:
         return _allowed_list(members)
-    return "a group of NAME = number" if origin is dict else _WORDS[hint]
+    if origin is dict:
+        return "a group of keys" if members[1] is Any else "a group of NAME = number"
+    return _WORDS[hint]
 
 
 def _allowed_list(members: tuple[Any, ...]) -> str:

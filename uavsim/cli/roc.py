@@ -52,18 +52,19 @@ def roc(
 
     kinds = kinds_of(detectors)
     base, launches, name = _launches(scenario, sigma)
-    settings = [replace(base, kind=kind) for kind in kinds]  # type: ignore[arg-type]
-
-    compared = _with_default(settings, base)
+    settings = [_of_kind(base, kind) for kind in kinds]
+    with user_input():
+        compared = _with_default(settings, base)
+        plain = reach.plain(settings, launches.rate)
     asked = reach.Work(hours, trials, cells)
     work = reach.within_reach(
         asked,
-        detectors=sum(1 for one in settings for _ in operating.levels(one)),
-        compared=len(compared) * len(operating.CELLS),
+        detectors=sum(1 for one in plain for _ in operating.levels(one)),
+        compared=len(plain) * len(operating.CELLS),
         rate=launches.rate,
     )
     with folder(out, f"roc-{seed}", overwrite=overwrite) as place:  # before anything is computed in vain
-        if left_out := reach.told(asked, work):
+        if left_out := reach.told(asked, work, reach.why(plain)):
             terminal.say(left_out)
         with Bar("trying launch detectors") as bar, user_input():
             found = operating.operate(
@@ -92,22 +93,32 @@ def roc(
     terminal.say(f"written to {place.target}")
 
 
+def _of_kind(base: "DetectorSettings", kind: str) -> "DetectorSettings":
+    """The same settings for another kind; options are those of the kind that they were given for."""
+    return replace(base, kind=kind, options=base.options if kind == base.kind else None)
+
+
 def kinds_of(text: str | None) -> list[str]:
-    """Kinds of detector from `A,B`; all of them without it."""
-    from sensors.choice import nearest, shown
-    from uavsim.studies.operating import KINDS
+    """Kinds of detector from `A,B`; all that are registered without it."""
+    from uavsim.onboard.launch import KINDS
 
     if text is None:
         return list(KINDS)
-    kinds = [part.strip() for part in text.split(",")]
-    for kind in kinds:
-        if kind not in KINDS:
-            near = nearest(kind, KINDS, cutoff=0.4)
-            hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
-            raise typer.BadParameter(f"unknown detector {shown(kind)}; {hint}", param_hint="--detectors")
+    kinds = [kind_of(part.strip(), "--detectors") for part in text.split(",")]
     if len(set(kinds)) != len(kinds):
         raise typer.BadParameter(f"{text[:60]!r} names a detector twice", param_hint="--detectors")
     return kinds
+
+
+def kind_of(name: str, option: str) -> str:
+    """Return the name of a kind of detector that is there, or refuse it."""
+    from uavsim.plugins import PluginError, find
+
+    try:
+        found: str = find("detector", name).name
+    except PluginError as error:
+        raise typer.BadParameter(f"detector {error}", param_hint=option) from None
+    return found
 
 
 def _launches(source: str | None, sigma: float) -> "tuple[DetectorSettings, Launches, str]":

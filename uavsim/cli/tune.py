@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, finite, folder, user_input
-from uavsim.cli.roc import load
+from uavsim.cli.roc import kind_of, load
 from uavsim.files import write_toml
 from uavsim.folders import FilePlace, Place
 
@@ -37,7 +37,7 @@ def tune(
     from uavsim.views import terminal
     from uavsim.views import tuning as view
 
-    kind = kind_of(detector)
+    kind = None if detector is None else kind_of(detector, "--detector")
     loaded = load(scenario)
     with user_input():
         hours = tuning.hours_for(false_alarms)
@@ -45,12 +45,13 @@ def tune(
     one = out is not None and out.suffix == ".toml"
     place = folder(out, f"tune-{loaded.name}-{seed}", overwrite=overwrite, kind=FilePlace if one else Place)
     with place as held:  # before anything is computed in vain
-        if patience := reach.tuning_told(hours, loaded.accelerometer.description().rate):
-            terminal.say(patience)
+        rate = loaded.accelerometer.description().rate
+        if plain := reach.plain([tuning.own_keys(loaded.detector, kind)], rate):
+            terminal.say(reach.tuning_told(hours, rate, reach.why(plain)))
         with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
             found = tuning.tune(
                 loaded,
-                kind,  # type: ignore[arg-type]
+                kind,
                 budget=false_alarms,
                 seed=seed,
                 trials=trials,
@@ -63,15 +64,3 @@ def tune(
             view.save(found, held.folder)
     view.print_tuned(found)
     terminal.say(f"written to {held.target}")
-
-
-def kind_of(name: str | None) -> str | None:
-    """Kind of detector of a name, None without it."""
-    from sensors.choice import nearest, shown
-    from uavsim.studies.operating import KINDS
-
-    if name is None or name in KINDS:
-        return name
-    near = nearest(name, KINDS, cutoff=0.4)
-    hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
-    raise typer.BadParameter(f"unknown detector {shown(name)}; {hint}", param_hint="--detector")
