@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.onboard.launch.settings import USES, reference
-from uavsim.score import launch_axis
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
 from uavsim.views.launch_sum import HEIGHTS, draw_held, held
@@ -29,9 +28,9 @@ def draw(record: Record) -> "Figure | None":
     """Specific force and the detector's windows, or its sum, around the launch."""
     if record.start is None or record.launch is None or not record.has("accelerometer"):
         return None
-    if record.plant in ("centrifuge", "wind-tunnel"):  # loads that come over seconds, or none
+    if record.scenario.plant.kind in ("centrifuge", "wind-tunnel"):  # loads that come over seconds, or none
         return None
-    kind, origin = record.settings("detector")["kind"], record.start
+    kind, origin = record.scenario.detector.kind, record.start
     windows = record.has("detector") and kind.endswith("window")
     heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else HEIGHTS.get(kind, ()))
     figure, axes = sheet(record.title, _words(record), heights, (1.5, 1.0), size=(11.5, 8.0))
@@ -66,13 +65,13 @@ def _recognition(record: Record, start: float, launch: Stretch) -> Stretch:
 
 def _words(record: Record) -> str:
     latency, crossing = record.scored("launch", "latency"), record.scored("launch", "latency_from_crossing")
-    words = record.settings("detector")["kind"] + ": "
+    words = record.scenario.detector.kind + ": "
     if latency is not None:
         words += f"detected {1e3 * latency:.1f} ms after the true launch"
     else:
         words += "no launch detected" if record.detected is None else "launch detected"
     if crossing is not None:
-        axis = launch_axis(record.settings("plant")["kind"], record.settings("detector")["axes"])
+        axis = record.scenario.launch_axis
         force = f"${'-' if axis[0] == '-' else ''}f_{axis[1]}$"
         words += f", {1e3 * crossing:.1f} ms after the true {force} crossed {CROSSING_G:g} g"
     false = record.scored("launch", "false_detections")
@@ -102,17 +101,17 @@ def _force(column: "Sequence[Axes]", record: Record, stretch: Stretch, origin: f
 
 def levels(record: Record) -> dict[str, float]:
     """Levels of the detector that its kind reads, in g."""
-    settings = record.settings("detector")
-    used = USES[settings["kind"]]
+    settings = record.scenario.detector
+    used = USES[settings.kind]
     if "threshold" not in used:
-        group: dict[str, Any] = next((settings[name] for name in used if isinstance(settings.get(name), dict)), {})
-        return {"c": group["reference"] / STANDARD_GRAVITY} if "reference" in group else {}
-    threshold = settings["threshold"]
+        level = next((getattr(getattr(settings, name), "reference", None) for name in used), None)
+        return {} if level is None else {"c": level / STANDARD_GRAVITY}
+    threshold = settings.threshold
     if "adaptive" in used:
-        return {"c": reference(threshold, settings["adaptive"].get("reference")) / STANDARD_GRAVITY}
+        return {"c": reference(threshold, settings.adaptive.reference) / STANDARD_GRAVITY}
     if "trigger" not in used:
         return {"level": threshold / STANDARD_GRAVITY}
-    trigger = settings.get("trigger", threshold)
+    trigger = threshold if settings.trigger is None else settings.trigger
     if trigger == threshold:
         return {"$G_1$ = $G_2$": threshold / STANDARD_GRAVITY}
     return {"$G_1$": trigger / STANDARD_GRAVITY, "$G_2$": threshold / STANDARD_GRAVITY}
@@ -158,13 +157,13 @@ def _windows(record: Record, stretch: Stretch, origin: float) -> _Windows:
 
 def _draw_windows(column: "Sequence[Axes]", record: Record, windows: _Windows) -> None:
     """Share of samples above the threshold in the window that is open, and which window that is."""
-    settings, x = record.settings("detector"), windows.x
+    settings, x = record.scenario.detector, windows.x
     share, level = column
     share.plot(x, windows.share, color=BLUE, linewidth=1.0, marker=".", markersize=3.5, label="share above $G_2$")
-    used = USES[settings["kind"]]
-    levels = settings["levels"] if "levels" in used else 1
+    used = USES[settings.kind]
+    levels = settings.levels if "levels" in used else 1
     if "ratio" in used:
-        ratio = settings["ratio"]
+        ratio = settings.ratio
         share.axhline(ratio, color=RED, linewidth=1.0, linestyle="--", label=f"$k_1$ = {ratio:g}")
     for rows, fill, colour, name in (
         (windows.ended, "none", BLUE, "ends below $k_1$"),

@@ -51,9 +51,8 @@ def held(record: Record, until: float) -> Held:
     """Let the scenario's detector read what it read in flight, until a time in s."""
     from sensors.mounting import attitude, linear
     from uavsim.onboard.launch import build
-    from uavsim.scenario import Scenario
 
-    scenario = Scenario.from_dict(record.flight.scenario)
+    scenario = record.scenario
     detector: Any = build(scenario.detector, scenario.accelerometer.description().rate)
     turn = linear(attitude(*scenario.accelerometer.mounting_deg))
     readings = np.column_stack([record.column("accelerometer", name) for name in ("t", "fx", "fy", "fz")])
