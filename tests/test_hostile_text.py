@@ -142,11 +142,16 @@ def test_an_error_is_one_line_of_what_is_seen(text: str, command: str) -> None:
 # -- the terminal ----------------------------------------------------------------------------------------------------
 
 
+def in_file(text: str) -> str:
+    """Return the text as a scenario's file can hold it: UTF-8 has no halves of characters, as JSON's escapes have."""
+    return text.encode("utf-8", "replace").decode()
+
+
 def named(flight: Flight, text: str) -> Flight:
     """The flight with text of somebody's wherever a folder may hold some."""
     unmet = {"key": text, "minimum": None, "maximum": 1.0, "value": 2.0, "met": False}
     score = {**flight.score, "requirements": [unmet], "expected": text}
-    return replace(flight, scenario={**flight.scenario, "name": text}, score=score)
+    return replace(flight, scenario={**flight.scenario, "name": in_file(text)}, score=score)
 
 
 @settings(deadline=None, derandomize=True, max_examples=20)
@@ -154,7 +159,7 @@ def named(flight: Flight, text: str) -> Flight:
 def test_a_score_shows_hostile_names_as_text(catapult: Flight, text: str) -> None:
     out = printed(lambda: terminal.print_score(named(catapult, text)))
     assert all(map(is_seen, out))
-    assert out.startswith("\n" + visible(text, keep="\n") + ", seed 1: ")
+    assert out.startswith("\n" + visible(in_file(text), keep="\n") + ", seed 1: ")
 
 
 @settings(deadline=None, derandomize=True, max_examples=60)

@@ -3,13 +3,16 @@
 import json
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from uavsim.onboard.launch import DetectorSettings
+from uavsim.plants.rig_settings import PlantSettings
 from uavsim.scenario import Scenario
-from uavsim.score import Judged, launch_axis, outcome, score
+from uavsim.score import Judged, outcome, score
 from uavsim.truth import STANDARD_GRAVITY
 
 RELEASE, EXIT, WINGS, OUT, MOTOR, END = 2.0, 2.4, 2.52, 2.8, 2.77, 12.0
@@ -57,7 +60,7 @@ def made(
     if readings is None:
         readings = {name: estimate[name] for name in ("t", "p_total", "p_static")}
     return Judged(
-        scenario=Scenario.from_dict(scenario).to_dict(),
+        scenario=Scenario.from_dict(scenario),
         tables={"truth": truth, "estimate": estimate, "air_data": readings},
         events=[{"event": name, "t": time} for name, time in events],
         release_time=RELEASE,
@@ -595,7 +598,8 @@ def test_without_an_airspeed_there_is_no_figure_of_it() -> None:
     ],
 )
 def test_the_launch_is_along_the_detectors_axis_of_a_rig(kind: Any, axes: Any, axis: str) -> None:
-    assert launch_axis(kind, axes) == axis
+    scenario = replace(Scenario(), plant=PlantSettings(kind=kind), detector=DetectorSettings(axes=axes))
+    assert scenario.launch_axis == axis
 
 
 # -- consistency -----------------------------------------------------------------------------------------------------

@@ -24,7 +24,7 @@ from uavsim.onboard.flight_computer import Estimate, FlightComputer
 from uavsim.plants.plant import Plant, Run
 from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import PLANT_STEP, Scenario, load_scenario
-from uavsim.score import Judged, launch_axis, score
+from uavsim.score import Judged, score
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ class Onboard:
                 believed_air(scenario), believed_noise(scenario, calibration), tare_window(scenario, release_time)
             ),
             rate,
-            launch_axis(scenario.plant.kind, scenario.detector.axes),
+            scenario.launch_axis,
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
         self.estimates: list[Estimate] = []
@@ -368,7 +368,7 @@ def replay(flight: Flight) -> Flight:
     tables["detector"] = frame_of_rows("detector", onboard.detections(flight.accelerometer["t"].to_numpy()))
     tables = {name: tables[name] for name in flight.tables}
     ended = flight.score.get("outcome", "")
-    judged = Judged(scenario.to_dict(), tables, onboard.computer.events, draws.release_time, ended, _versions())
+    judged = Judged(scenario, tables, onboard.computer.events, draws.release_time, ended, _versions())
     reason = {"reason": flight.score["reason"]} if "reason" in flight.score else {}
     return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged) | reason)
 
@@ -383,9 +383,8 @@ def _flight(simulation: Cosimulation) -> Flight:
         "estimate": frame_of_rows("estimate", onboard.estimates),
         "detector": frame_of_rows("detector", onboard.detections(accelerometer["t"].to_numpy())),
     }
-    scenario = simulation.scenario.to_dict()
     judged = Judged(
-        scenario,
+        simulation.scenario,
         {"truth": truth, **tables},
         onboard.computer.events,
         simulation.draws.release_time,
@@ -394,7 +393,7 @@ def _flight(simulation: Cosimulation) -> Flight:
     )
     result = score(judged) | ({"reason": plant.failure} if plant.failure else {})
     record = frame("truth", {**truth, "phase": judged.phases()})
-    return Flight(scenario, {"truth": record, **tables}, onboard.computer.events, result)
+    return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)
 
 
 def _versions() -> dict[str, str]:

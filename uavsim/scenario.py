@@ -8,13 +8,11 @@ cannot tell one by one is checked here.
 import math
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import numpy as np
 from annotated_types import Interval
 
 from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
@@ -25,7 +23,6 @@ from sensors.settings import Fault, PortFault
 from sensors.vibration import check as check_vibration
 from uavsim import inputs, plugins, settings
 from uavsim.files import without_none
-from uavsim.flight import UNITS
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings
@@ -34,10 +31,13 @@ from uavsim.onboard.launch.settings import kind_of, unread
 from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
 from uavsim.plants.hangar import find_aircraft, hangar
-from uavsim.plants.rig_settings import PlantSettings, length
+from uavsim.plants.rig_settings import AIRCRAFT, PlantSettings, length
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
-from uavsim.score import Judged, score
+from uavsim.score_keys import NUMBERS
 from uavsim.settings import SettingError
+
+if TYPE_CHECKING:
+    from uavsim.flight import Flight
 
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
 Outcome = Literal[
@@ -173,9 +173,31 @@ class Scenario:
         plain: dict[str, Any] = without_none(asdict(self))
         return plain
 
+    @property
+    def launch_axis(self) -> str:
+        """Signed body axis of the launch: +x of an aircraft; of a rig the detector's, if it is one."""
+        axes = self.detector.axes
+        return "+x" if self.plant.kind == AIRCRAFT or isinstance(axes, str) or len(axes) != 1 else axes[0]
+
     def with_seed(self, seed: int) -> "Scenario":
         """The same scenario with other draws."""
         return Scenario.from_dict({**self.to_dict(), "seed": seed})
+
+
+def scenario_of(flight: "Flight") -> Scenario:
+    """The scenario of a flight, with its outside inputs as they were read then.
+
+    Each key is read as declared. How the keys go together was checked before the flight.
+
+    Raises
+    ------
+    ValueError
+        One line that names the key and what is allowed.
+    """
+    try:
+        return _with_inputs(settings.read(Scenario, flight.scenario), flight.scenario)
+    except SettingError as error:
+        raise ValueError(f"scenario: {error.problem}") from None
 
 
 def packaged() -> dict[str, str]:
@@ -545,27 +567,9 @@ def _check_requirements(s: Scenario) -> None:
     """Refuse a slip in a file; a record keeps what it was judged by, even if the score no longer has it."""
     for i, r in enumerate(s.requirements):
         where = f"requirements[{i}]"
-        if r.key not in figures():
-            near = nearest(r.key, figures())
+        if r.key not in NUMBERS:
+            near = nearest(r.key, NUMBERS)
             hint = f"; did you mean {near!r}?" if near else "; see score.json for those there are"
             raise SettingError(f"{where}.key = {shown(r.key)}: is no number of the score{hint}", "requirements")
         if r.minimum is not None and r.maximum is not None and r.minimum > r.maximum:
             raise SettingError(f"{where} ({r.key}): minimum is above maximum", "requirements")
-
-
-@cache
-def figures() -> tuple[str, ...]:
-    """Keys of the numbers that a score holds, joined by dots: those of a flight of one row."""
-    row = {name: np.zeros(1) for name in UNITS["truth"]}
-    tables = {"truth": row, **{name: {c: np.zeros(0) for c in UNITS[name]} for name in UNITS if name != "truth"}}
-    plain = Scenario().to_dict()
-    result = score(Judged(plain, tables, [], release_time=1.0, ended="completed", versions={}))
-    return tuple(key for key, value in _leaves(result, "") if not isinstance(value, str | list))
-
-
-def _leaves(value: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
-    for name, item in value.items():
-        if isinstance(item, Mapping):
-            yield from _leaves(item, f"{prefix}{name}.")
-        else:
-            yield prefix + name, item

@@ -18,17 +18,21 @@ Whether the claimed uncertainty is what it is: NEES, coverage, NIS and whiteness
 speed that the noise hides, an error over its claim says nothing: there V < 2 σ_V.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.consistency import LAGS, LEAST, ljung_box
-from uavsim.plants.rig_settings import AIRCRAFT, PlantKind
+from uavsim.plants.rig_settings import AIRCRAFT
+from uavsim.score_keys import PHASES, PRESSURE, PRESSURES
 from uavsim.truth import STANDARD_GRAVITY
+
+if TYPE_CHECKING:
+    from uavsim.scenario import Requirement, Scenario
 
 Array = NDArray[np.float64]
 
@@ -45,13 +49,7 @@ SPEED_TOLERANCE = 2.0  # m/s
 BANK_LIMIT = np.pi / 6.0  # rad
 TWO_SIGMA = 1.959964  # standard normal quantile of 97.5 %
 HIDDEN = 2.0  # σ_V: an airspeed below it is below V*
-PHASES = ("stroke", "transition", "cruise")
 RUN = "run"  # the one phase of a rig
-
-
-def launch_axis(kind: PlantKind, axes: Sequence[str]) -> str:
-    """Signed body axis of the launch: +x of an aircraft; of a rig the detector's, if it is one."""
-    return "+x" if kind == AIRCRAFT or isinstance(axes, str) or len(axes) != 1 else axes[0]
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ class Judged:
     Attributes
     ----------
     scenario
-        The resolved scenario, as nested plain values.
+        What was flown.
     tables
         'truth', 'estimate' and 'air_data': each gives its columns by name.
     events
@@ -74,7 +72,7 @@ class Judged:
         Of what was flown with.
     """
 
-    scenario: Mapping[str, Any]
+    scenario: "Scenario"
     tables: Mapping[str, Any]
     events: list[dict[str, Any]]
     release_time: float
@@ -92,7 +90,7 @@ class Judged:
     @property
     def is_rig(self) -> bool:
         """Whether it was on a rig and not in flight."""
-        return bool(self.scenario["plant"]["kind"] != AIRCRAFT)
+        return self.scenario.plant.kind != AIRCRAFT
 
     @cached_property
     def time(self) -> Array:
@@ -111,7 +109,7 @@ class Judged:
     @cached_property
     def crossing_time(self) -> float | None:
         """When the true specific force along the launch first exceeds 4.5 g, s."""
-        axis = launch_axis(self.scenario["plant"]["kind"], self.scenario["detector"]["axes"])
+        axis = self.scenario.launch_axis
         force = self.truth(f"f{axis[1]}") * (-1.0 if axis[0] == "-" else 1.0)
         return self._first(force > CROSSING, self.release_time)
 
@@ -120,8 +118,7 @@ class Judged:
         """When the last shoe leaves, s: the way along the rail has become the stroke."""
         if self.is_rig:
             return None
-        stroke = self.scenario["launcher"]["stroke"]
-        return self._first(self.truth("rail_s") >= stroke, self.release_time)
+        return self._first(self.truth("rail_s") >= self.scenario.launcher.stroke, self.release_time)
 
     @cached_property
     def wing_start_time(self) -> float | None:
@@ -196,16 +193,16 @@ def _score(flight: Judged) -> dict[str, Any]:
     airspeed = _airspeed(flight)
     result: dict[str, Any] = {
         "outcome": outcome(flight),
-        "expected": flight.scenario["expect"],
-        "seed": flight.scenario["seed"],
+        "expected": flight.scenario.expect,
+        "seed": flight.scenario.seed,
         "versions": dict(flight.versions),
         "launch": launch,
         "airspeed": airspeed,
-        "pressure": {name: _pressure(flight, name) for name in ("total", "static")},
+        "pressure": {name: _pressure(flight, name) for name in PRESSURES},
         "flight": _flight(flight),
         "requirements": [],
     }
-    result["requirements"] = [_requirement(result, r) for r in flight.scenario.get("requirements", ())]
+    result["requirements"] = [_requirement(result, r) for r in flight.scenario.requirements]
     return result
 
 
@@ -229,7 +226,7 @@ def outcome(flight: Judged) -> str:
 def _cruises(flight: Judged) -> bool:
     last = flight.time >= flight.time[-1] - LAST
     motor = flight.event_time("motor_on")
-    target = flight.scenario["flight_computer"]["airspeed"]
+    target = flight.scenario.flight_computer.airspeed
     return bool(
         motor is not None
         and motor <= flight.time[-1] - LAST
@@ -250,7 +247,7 @@ def _launch(flight: Judged) -> dict[str, Any]:
         "latency_from_crossing": _difference(detected, flight.crossing_time),
         "detections": len(flight.detections),
         "false_detections": sum(t < flight.release_time for t in flight.detections),
-        "detector": flight.scenario["detector"]["kind"],
+        "detector": flight.scenario.detector.kind,
     }
 
 
@@ -320,13 +317,13 @@ def _pressure(flight: Judged, channel: str) -> dict[str, Any]:
     truth = np.interp(time, flight.time, flight.truth(name))
     error = flight.estimate(name) - truth
     raw = _reading(flight, name, time) - truth
-    air = flight.scenario["air_data"]
+    air = flight.scenario.air_data
     exist = np.isfinite(error) & np.isfinite(raw)
     before, rows = exist & (time < flight.release_time), exist & flight.rows(time)
-    if channel == "total" and air["tare"] != "none":  # before, it is not tared, and a cover keeps the free stream out
-        before &= time > flight.release_time - air["cover_off"] + SETTLED
+    if channel == "total" and air.tare != "none":  # before, it is not tared, and a cover keeps the free stream out
+        before &= time > flight.release_time - air.cover_off + SETTLED
     if not before.any():
-        return dict.fromkeys(("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean"))
+        return dict.fromkeys(PRESSURE)
     bias = error[before].mean()
     rmse, rmse_raw = _rms(error[rows] - bias), _rms(raw[rows] - raw[before].mean())
     nis = flight.estimate(f"nis_{channel}")[rows]
@@ -366,15 +363,15 @@ def _flight(flight: Judged) -> dict[str, Any]:
     }
 
 
-def _requirement(result: dict[str, Any], wanted: Mapping[str, Any]) -> dict[str, Any]:
+def _requirement(result: dict[str, Any], wanted: "Requirement") -> dict[str, Any]:
     """Hold a figure against its bounds; one that does not exist, or is no number, does not meet them."""
     found: Any = result
-    for part in wanted["key"].split("."):
+    for part in wanted.key.split("."):
         found = found.get(part) if isinstance(found, dict) else None
     value = found if isinstance(found, int | float) else None
-    low, high = wanted.get("minimum"), wanted.get("maximum")
+    low, high = wanted.minimum, wanted.maximum
     met = value is not None and (low is None or value >= low) and (high is None or value <= high)
-    return {"key": wanted["key"], "minimum": low, "maximum": high, "value": value, "met": met}
+    return {"key": wanted.key, "minimum": low, "maximum": high, "value": value, "met": met}
 
 
 def _difference(a: float | None, b: float | None) -> float | None:

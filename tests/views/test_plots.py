@@ -81,7 +81,7 @@ def made_up(*, push: float = PUSH, end: float = END, seed: int = 1) -> Flight:
         }
     )
     tables = {"accelerometer": accelerometer, "air_data": air_data, "estimate": estimate, "detector": table}
-    judged = Judged(scenario.to_dict(), {"truth": truth, **tables}, events, RELEASE, "completed", {})
+    judged = Judged(scenario, {"truth": truth, **tables}, events, RELEASE, "completed", {})
     phases = pd.DataFrame({**truth, "phase": judged.phases()})
     return Flight(scenario.to_dict(), {"truth": phases, **tables}, events, score(judged))
 

@@ -13,19 +13,10 @@ from uavsim import __version__
 from uavsim.flight import Flight, frame
 from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
+from uavsim.score_keys import AIRSPEED, FLIGHT, PHASES, PRESSURE, PRESSURES
 
 LOT = 50_000  # readings that are plain numbers at once
 PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
-
-_AIRSPEED = (
-    *("rmse", "rmse_raw", "reduction_percent", "bias", "max_error", "nees_mean", "nis_mean", "whiteness"),
-    *("coverage_95", "coverage_1_sigma", "coverage_2_sigma", "coverage_3_sigma", "valid_fraction"),
-)
-_PRESSURE = ("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean")
-_FLIGHT = (
-    *("rail_exit_time", "rail_exit_speed", "wing_start_time", "wing_out_time"),
-    *("cruise_airspeed", "cruise_airspeed_sd", "rail_exit_altitude", "lowest_altitude_after_exit"),
-)
 
 
 def replay_log(recording: Recording, settings: launch.DetectorSettings | None = None) -> Flight:
@@ -99,7 +90,7 @@ def _rows(readings: Array) -> Iterator[list[float]]:
 
 def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str, Any]:
     start, end = recording.span
-    nothing = dict.fromkeys((*_AIRSPEED, "samples"))
+    nothing = dict.fromkeys(AIRSPEED)
     return {
         "outcome": None,
         "expected": None,
@@ -116,9 +107,9 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
             "false_detections": None,
             "detector": kind,
         },
-        "airspeed": {**nothing, **{phase: dict(nothing) for phase in ("stroke", "transition", "cruise")}},
-        "pressure": {name: dict.fromkeys(_PRESSURE) for name in ("total", "static")},
-        "flight": {**dict.fromkeys(_FLIGHT), "duration": end - start},
+        "airspeed": {**nothing, **{phase: dict(nothing) for phase in PHASES}},
+        "pressure": {name: dict.fromkeys(PRESSURE) for name in PRESSURES},
+        "flight": {**dict.fromkeys(FLIGHT), "duration": end - start},
         "requirements": [],
         "recording": {
             "files": list(recording.files),

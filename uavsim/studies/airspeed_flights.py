@@ -32,7 +32,7 @@ from uavsim.onboard.airspeed import (
 )
 from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
 from uavsim.onboard.airspeed.rest_wind import HIDDEN, VISIBLE
-from uavsim.scenario import Scenario
+from uavsim.scenario import scenario_of
 from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -81,7 +81,7 @@ class RememberingFilter(AidedFilter):
 
 def replayed(flight: Flight) -> Array:
     """Return t, airspeed, its standard deviation and the raw airspeed from where the filter starts on; shape (r, 4)."""
-    scenario = Scenario.from_dict(flight.scenario)
+    scenario = scenario_of(flight)
     draws = draw(scenario)
     estimator = RememberingFilter(
         believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws.release_time)
@@ -142,7 +142,7 @@ def bound(flight: Flight, courses: Courses) -> tuple[Array, Array]:
     courses : Courses
         Those of many flights, its own among them, or its own alone.
     """
-    scenario = Scenario.from_dict(flight.scenario)
+    scenario = scenario_of(flight)
     noise = believed_noise(scenario, draw(scenario).calibration)
     settings = believed_air(scenario)
     score = flight.score["launch"]
@@ -224,7 +224,7 @@ def hold(flight: Flight) -> Held:
         "climb": (out + UNFOLDED, out + CLIMB),
         "cruise": (out + CLIMB, np.inf),
     }
-    aim = flight.scenario["flight_computer"]["airspeed"]
+    aim = scenario_of(flight).flight_computer.airspeed
     flown = flight.truth["airspeed"].to_numpy()
     reached = flown[int(np.argmax(flown >= aim)) :]
     return Held(flight, rows, course(flight), edges, float(np.sqrt(np.mean((reached - aim) ** 2))))
@@ -273,7 +273,7 @@ def paper_rmse(flights: list[Held], gain: float, phase: str = "launch") -> float
     """RMSE of the published filter on the same readings, m/s, with a gain on the total pressure."""
     errors = []
     for held in flights:
-        scenario = Scenario.from_dict(held.flight.scenario)
+        scenario = scenario_of(held.flight)
         draws = draw(scenario)
         settings = EstimatorSettings(kind="paper", gain_total=gain)
         estimator = PaperFilter(

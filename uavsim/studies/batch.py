@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from uavsim.cosim import draw, fly
 from uavsim.flight import Flight
 from uavsim.interrupts import Interrupts
-from uavsim.scenario import Scenario
+from uavsim.scenario import Scenario, scenario_of
 from uavsim.score import HIDDEN
 from uavsim.studies.airspeed_flights import Course, course
 from uavsim.studies.processes import each
@@ -213,7 +213,7 @@ def _trace(flight: Flight, *, with_course: bool) -> ErrorTrace:
     filtered, raw = (
         _binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")
     )
-    bounded = flight.scenario["estimator"]["kind"] == "aided" and flight.score["launch"]["detected_time"] is not None
+    bounded = scenario_of(flight).estimator.kind == "aided" and flight.score["launch"]["detected_time"] is not None
     return ErrorTrace(
         flight.score["seed"],
         filtered,

@@ -27,7 +27,7 @@ from uavsim.cosim import STEP_RATE, draw, make_plant
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import Scenario
-from uavsim.score import Judged, launch_axis
+from uavsim.score import Judged
 from uavsim.studies.detections import BatchDetector
 from uavsim.studies.signals import LaunchSettings, LaunchTruth, record_launches
 from uavsim.truth import STANDARD_GRAVITY as G0
@@ -170,11 +170,11 @@ def _fly(scenario: Scenario, index: int) -> _Flight:
         if left and not plant.on_rail:
             left, exit_time = False, plant.t
     table = plant.truth()
-    judged = Judged(scenario.to_dict(), {"truth": table}, [], drawn.release_time, "", {})
+    judged = Judged(scenario, {"truth": table}, [], drawn.release_time, "", {})
     onset = judged.true_time
     if onset is None:
         raise ValueError(f"{scenario.name}: the aircraft does not move within {LONGEST:g} s of its release")
-    axis = launch_axis(scenario.plant.kind, scenario.detector.axes)
+    axis = scenario.launch_axis
     force = np.column_stack([table[name] for name in ("fx", "fy", "fz")])
     axial = force[:, "xyz".index(axis[1])] * (-1.0 if axis[0] == "-" else 1.0)
     end = min(exit_time, float(judged.time[-1]))

@@ -49,7 +49,7 @@ def _words(record: Record) -> str:
         raw, filtered = (record.scored("airspeed", *keys, key) for key in ("rmse_raw", "rmse"))
         if filtered is not None:
             parts.append(f"{name} {raw:.3f} → {filtered:.3f}")
-    kind: str = record.settings("estimator")["kind"]
+    kind = record.scenario.estimator.kind
     return f"{kind}: RMSE raw → filtered, m/s: {', '.join(parts)}" if parts else kind
 
 
@@ -82,7 +82,8 @@ def _not_valid(axes: "Axes", t: Array, valid: Array) -> None:
 
 def _bound(record: Record) -> tuple[Array, Array] | None:
     """Times and least standard deviation on this flight's own course, where the aided estimator flew; else None."""
-    if not (record.has("truth") and record.plant == AIRCRAFT and record.settings("estimator")["kind"] == "aided"):
+    flown = record.scenario
+    if not (record.has("truth") and flown.plant.kind == AIRCRAFT and flown.estimator.kind == "aided"):
         return None
     needed = (("launch", "true_time"), ("launch", "detected_time"), ("flight", "rail_exit_time"), ("airspeed", "rmse"))
     if any(record.scored(*keys) is None for keys in needed):
@@ -104,7 +105,7 @@ def _errors(axes: "Axes", record: Record, stretch: Stretch, least: tuple[Array, 
     if least is not None:
         when, sd = _averaged(*least) if stretch == record.span else least
         shown = (when >= stretch[0]) & (when <= stretch[1])
-        words = "± 2 √PCRB, no fault" if set_faults(record.flight.scenario) else "± 2 √PCRB, the bound"
+        words = "± 2 √PCRB, no fault" if set_faults(record.scenario) else "± 2 √PCRB, the bound"
         for sign, name in ((2.0, words), (-2.0, None)):
             axes.plot(when[shown], sign * sd[shown], color=RED, linewidth=0.9, linestyle="--", label=name)
     axes.axhline(0.0, color=BLACK, linewidth=0.8)

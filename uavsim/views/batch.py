@@ -391,7 +391,7 @@ def _consistency(flown: Batch) -> "Figure | None":
         upper.yaxis.set_major_formatter("{x:g}")
         lower.plot(time[there], filtered, color=BLUE, linewidth=1.3, label="RMSE over the flights")
         if least is not None:
-            words = "√PCRB, no fault" if set_faults(flown.scenario.to_dict()) else "bound, √PCRB"
+            words = "√PCRB, no fault" if set_faults(flown.scenario) else "bound, √PCRB"
             lower.plot(*least, color=RED, linewidth=1.1, linestyle="--", label=words)
         lower.set_yscale("log")
         lower.yaxis.set_major_formatter("{x:g}")

@@ -20,7 +20,7 @@ RPM = 30.0 / np.pi  # 1/min for 1 rad/s
 
 def draw(record: Record) -> "Figure | None":
     """The whole run, if it is one."""
-    if record.plant != "centrifuge" or not record.has("accelerometer"):
+    if record.scenario.plant.kind != "centrifuge" or not record.has("accelerometer"):
         return None
     rows = ROWS if record.has("truth") else ROWS[:2]
     figure, axes = sheet(record.title, _words(record), rows)
@@ -40,8 +40,8 @@ def draw(record: Record) -> "Figure | None":
 
 
 def _words(record: Record) -> str:
-    settings, found = record.settings("plant")["centrifuge"], record.scored("launch", "detections")
-    words = f"set to {settings['load_g']:g} g at {settings['arm']:g} m; {record.settings('detector')['kind']}: "
+    settings, found = record.scenario.plant.centrifuge, record.scored("launch", "detections")
+    words = f"set to {settings.load_g:g} g at {settings.arm:g} m; {record.scenario.detector.kind}: "
     words += "launch recognised" if found else "no launch recognised"
     held = _held(record)
     return words if held is None else f"{words}; while held the sensor reads {held:.2f} g in the mean"
@@ -49,12 +49,12 @@ def _words(record: Record) -> str:
 
 def _held(record: Record) -> float | None:
     """Mean reading along the arm while the speed is held, g."""
-    settings, release = record.settings("plant")["centrifuge"], record.release
+    settings, release = record.scenario.plant.centrifuge, record.release
     if release is None:
         return None
     t, force = record.column("accelerometer", "t"), record.column("accelerometer", "fz")
-    start = release + settings["spin_up"]
-    rows = (t >= start) & (t <= start + settings["hold"])
+    start = release + settings.spin_up
+    rows = (t >= start) & (t <= start + settings.hold)
     return float(np.mean(force[rows])) / STANDARD_GRAVITY if rows.any() else None
 
 

@@ -1,15 +1,14 @@
 """What a scenario makes go wrong with a sensor, and what was found of it on board: a fault's kind, place and times."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-PLACES = {
-    ("air_data", "total_port"): "total port",
-    ("air_data", "static_port"): "static port",
-    ("air_data", "total"): "total sensor",
-    ("air_data", "static"): "static sensor",
-    ("accelerometer",): "accelerometer",
-}
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sensors.settings import Fault, PortFault
+    from uavsim.scenario import Scenario
+
 NOUNS = {"blocked": "blockage", "stuck": "stuck value", "invalid": "invalid value"}
 PARTICIPLES = {"leak": "leaking", "ice": "icing", "water": "wet", "spike": "spiked", "offset": "offset"}
 
@@ -24,21 +23,25 @@ class SetFault:
     stop: float
 
 
-def set_faults(scenario: dict[str, Any]) -> list[SetFault]:
-    """Return the faults of all sensors and ports in the order of their start; none of a recording."""
+def set_faults(scenario: "Scenario") -> list[SetFault]:
+    """Return the faults of all sensors and ports in the order of their start."""
     found = []
-    for keys, place in PLACES.items():
-        group: Any = scenario
-        for key in keys:
-            group = group.get(key) or {}
-        for fault in group.get("faults") or ():
-            kind = str(fault["kind"])
-            name, noun = f"{place} {PARTICIPLES.get(kind, kind)}", NOUNS.get(kind, kind)
-            found.append(SetFault(name, noun, float(fault["start"]), float(fault["stop"])))
+    air = scenario.air_data
+    faults: dict[str, Sequence[Fault | PortFault]] = {
+        "total port": air.total_port.faults,
+        "static port": air.static_port.faults,
+        "total sensor": air.total.faults,
+        "static sensor": air.static.faults,
+        "accelerometer": scenario.accelerometer.faults,
+    }
+    for place, of_place in faults.items():
+        for fault in of_place:
+            name, noun = f"{place} {PARTICIPLES.get(fault.kind, fault.kind)}", NOUNS.get(fault.kind, fault.kind)
+            found.append(SetFault(name, noun, fault.start, fault.stop))
     return sorted(found, key=lambda fault: fault.start)
 
 
-def told(scenario: dict[str, Any], end: float) -> str:
+def told(scenario: "Scenario", end: float) -> str:
     """Return the faults in words, as "total port blocked from 12 s to 20 s"; `end` of the flight, s."""
     words = []
     for fault in set_faults(scenario):

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from uavsim.scenario import Scenario, scenario_of
 from uavsim.views.faults import noticed, set_faults, told
 
 if TYPE_CHECKING:
@@ -19,18 +20,25 @@ MOSTLY = 0.7  # share of the RMSE that makes the bias the story
 
 def notes(flight: "Flight") -> list[str]:
     """Sentences on a flight's score, none where nothing needs saying."""
-    found = [_faults(flight), _stroke(flight), _bias(flight) or _no_help(flight), _lag(flight), _single_flight(flight)]
+    scenario = scenario_of(flight)
+    found = [
+        _faults(flight, scenario),
+        _stroke(flight, scenario),
+        _bias(flight, scenario) or _no_help(flight, scenario),
+        _lag(flight, scenario),
+        _single_flight(flight),
+    ]
     return [note for note in found if note]
 
 
-def _faults(flight: "Flight") -> str:
+def _faults(flight: "Flight", scenario: Scenario) -> str:
     """Say what was made to go wrong and what was found of it on board, or what was found where nothing was wrong.
 
     On a rig without air there is no airspeed to lose.
     """
     if not flight.score["airspeed"]["samples"]:
         return ""
-    wrong = told(flight.scenario, float(flight.score["flight"]["duration"]))
+    wrong = told(scenario, float(flight.score["flight"]["duration"]))
     found = [_found(event) for event in flight.events if noticed(event)]
     more = f" and {len(found) - FINDINGS} more" if len(found) > FINDINGS else ""
     listed = (", ".join(found[:FINDINGS]) or "nothing") + more
@@ -44,7 +52,7 @@ def _found(event: dict[str, Any]) -> str:
     return f"{noticed(event)}{kind} at {event['t']:.2f} s"
 
 
-def _stroke(flight: "Flight") -> str:
+def _stroke(flight: "Flight", scenario: Scenario) -> str:
     stroke = flight.score["airspeed"]["stroke"]
     if stroke["reduction_percent"] is None:
         return ""
@@ -53,12 +61,12 @@ def _stroke(flight: "Flight") -> str:
     if ratio <= 1.0:
         return f"{said}."
     launch = flight.score["launch"]["detected_time"] is not None
-    unaided = flight.scenario["estimator"]["kind"] == "aided" and not launch
+    unaided = scenario.estimator.kind == "aided" and not launch
     why = "; without a detected launch the specific force does not aid it." if unaided else "."
     return f"{said}: while the airspeed rises the filter's lag adds to the sensors' delay{why}"
 
 
-def _lag(flight: "Flight") -> str:
+def _lag(flight: "Flight", scenario: Scenario) -> str:
     """Say why a filtered pressure is worse than the readings, where no stroke has said it yet."""
     stroke = flight.score["airspeed"]["stroke"]
     pressure = flight.score["pressure"]
@@ -68,33 +76,32 @@ def _lag(flight: "Flight") -> str:
         not worse
         or not flight.score["airspeed"]["samples"]
         or stroke["reduction_percent"] is not None
-        or set_faults(flight.scenario)
+        or set_faults(scenario)
     ):
         return ""
     said = " and ".join(f"{name} pressure {1.0 - 0.01 * gains[name]:.2f}" for name in worse)
     return f"filtered RMSE over raw: {said}; while a pressure keeps rising or falling its filter lags behind."
 
 
-def _bias(flight: "Flight") -> str:
+def _bias(flight: "Flight", scenario: Scenario) -> str:
     """Say that an error is one that no filter takes away."""
     airspeed = flight.score["airspeed"]
     if not airspeed["rmse"] or abs(airspeed["bias"]) < MOSTLY * airspeed["rmse"]:
         return ""
-    if set_faults(flight.scenario):
+    if set_faults(scenario):
         return f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, a fault having been set."
-    tare = flight.scenario["air_data"]["tare"]
     return (
         f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, which no filter takes away "
-        f"(air_data.tare is {tare!r})."
+        f"(air_data.tare is {scenario.air_data.tare!r})."
     )
 
 
-def _no_help(flight: "Flight") -> str:
+def _no_help(flight: "Flight", scenario: Scenario) -> str:
     """Why a constant-gain filter cannot help sensors that are quieter than its lag."""
     airspeed = flight.score["airspeed"]
     if airspeed["reduction_percent"] is None or airspeed["reduction_percent"] > LITTLE:
         return ""
-    noise, gain, slope, interval = _total_channel(flight)
+    noise, gain, slope, interval = _total_channel(flight, scenario)
     lag = slope * interval * (1.0 - PAPER_GAIN) / PAPER_GAIN
     if noise > QUIET * lag:
         return ""  # it is something else: a fault, an offset
@@ -106,7 +113,7 @@ def _no_help(flight: "Flight") -> str:
     )
 
 
-def _total_channel(flight: "Flight") -> tuple[float, float, float, float]:
+def _total_channel(flight: "Flight", scenario: Scenario) -> tuple[float, float, float, float]:
     """Noise, Pa, steady gain, steepest rise in the stroke, Pa/s, and interval, s, of the total pressure.
 
     A random-walk filter of steady gain K leaves sqrt(K / (2 - K)) of white noise and follows a ramp with an error of
@@ -114,9 +121,7 @@ def _total_channel(flight: "Flight") -> tuple[float, float, float, float]:
     """
     from uavsim.beliefs import believed_noise
     from uavsim.onboard.airspeed import process_noise, steady_gain
-    from uavsim.scenario import Scenario
 
-    scenario = Scenario.from_dict(flight.scenario)
     believed = believed_noise(scenario)
     noise = believed.total_sd
     stroke = flight.truth[flight.truth["phase"] == "stroke"]

@@ -28,7 +28,7 @@ def draw(record: Record) -> "Figure | None":
     judged = record.has("truth")
     reference = _reference(record)
     words = _words(record, reference)
-    untared = record.settings("air_data")["tare"] == "none"
+    untared = record.scenario.air_data.tare == "none"
     figure, axes = sheet(record.title, words, (1.0,) * 3, (1.0,) * (1 + judged), gap=(0.12, 0.22))
     for row, channel in zip(axes, _channels(record, reference), strict=True):
         _values(row[0], channel, "filtered" if untared else "filtered (tared)")
@@ -125,11 +125,10 @@ def _error(record: Record, series: Series, true: Series) -> Series:
 
 def _covered_until(record: Record) -> float | None:
     """When the cover came off the head, s; None if there was none or it is not known."""
-    settings = record.settings("air_data")
-    if settings["tare"] != "covered" or record.release is None:
+    settings = record.scenario.air_data
+    if settings.tare != "covered" or record.release is None:
         return None
-    off: float = settings["cover_off"]
-    return record.release - off
+    return record.release - settings.cover_off
 
 
 def _cover(column: "Sequence[Axes]", record: Record) -> None:
@@ -137,7 +136,7 @@ def _cover(column: "Sequence[Axes]", record: Record) -> None:
     until = _covered_until(record)
     if until is None:
         return
-    tare = until - record.settings("air_data")["tare_duration"]
+    tare = until - record.scenario.air_data.tare_duration
     for axes in column:
         axes.axvspan(record.span[0], until, color=GREY, alpha=0.15, linewidth=0.0, label="head covered", zorder=0)
         axes.axvspan(tare, until, color=GREY, alpha=0.35, linewidth=0.0, label="tare measured", zorder=0)

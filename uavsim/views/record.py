@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.scenario import Scenario, scenario_of
 from uavsim.score import CROSSING
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.faults import noticed, set_faults
@@ -50,10 +51,10 @@ class Record:
         """Return the time and some columns over a stretch of time, with one more row on each side."""
         return within(stretch, *(self.column(table, name) for name in ("t", *names)))
 
-    def settings(self, group: str) -> dict[str, Any]:
-        """Return a group of the scenario."""
-        values: dict[str, Any] = self.flight.scenario[group]
-        return values
+    @cached_property
+    def scenario(self) -> Scenario:
+        """What was flown."""
+        return scenario_of(self.flight)
 
     def scored(self, *keys: str) -> Any:
         """Return a score's value, None if it has none."""
@@ -63,11 +64,6 @@ class Record:
         return value
 
     @cached_property
-    def plant(self) -> str:
-        """Kind of the plant; nothing of a recording, which had none."""
-        return str(self.flight.scenario.get("plant", {}).get("kind", ""))
-
-    @cached_property
     def has_air(self) -> bool:
         """Tell whether there was an airspeed, as far as the truth knows."""
         return not self.has("truth") or bool(np.isfinite(self.column("truth", "airspeed")).any())
@@ -75,9 +71,9 @@ class Record:
     @cached_property
     def title(self) -> str:
         """Scenario, seed and outcome."""
-        name, outcome, expected = self.flight.scenario["name"], self.scored("outcome"), self.scored("expected")
+        name, outcome, expected = self.scenario.name, self.scored("outcome"), self.scored("expected")
         if outcome is None:
-            return str(name)
+            return name
         verdict = "as expected" if outcome == expected else f"expected {expected}"
         return f"{name}, seed {self.scored('seed')}: {outcome} ({verdict})"
 
@@ -150,7 +146,7 @@ class Record:
         """What was set to go wrong with a sensor within the record, and the first of each kind noticed on board."""
         first, last = self.span
         found: dict[str, tuple[float, str]] = {}
-        for fault in set_faults(self.flight.scenario):
+        for fault in set_faults(self.scenario):
             if fault.start < last:
                 found.setdefault(fault.name, (max(fault.start, first), BLACK))
                 if fault.stop < last:

@@ -6,11 +6,12 @@ none, with the detector's windows below if it has any. Time is the log's own, in
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from uavsim.onboard.launch.settings import reference
+from uavsim.onboard.launch.settings import DetectorSettings, if_known
+from uavsim.settings import read
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.curves import thin
 from uavsim.views.figure import BLACK, BLUE, GREY, LIGHT, RED, SKY, label, legend, save, sheet
@@ -72,13 +73,14 @@ def draw(flight: "Flight") -> "Figure":
     centre = found[0] if found else float(t[int(np.nanargmax(readings["fx"].to_numpy()))])
     whole = float(t[0]), float(t[-1])
     stretches: tuple[Stretch, Stretch] = (whole, (max(centre - BEFORE, whole[0]), min(centre + AFTER, whole[1])))
-    windows = flight.scenario["detector"]["kind"].endswith("window")
+    detector = read(DetectorSettings, flight.scenario["detector"])
+    windows = if_known(detector).window is not None
     heights = HEIGHTS if windows else HEIGHTS[:-1]
     figure, axes = sheet(flight.scenario["name"], _words(flight), heights, WIDTHS, size=(11.5, 7.0))
     columns = list(zip(*axes, strict=True))
     for column, stretch in zip(columns, stretches, strict=True):
         column[0].set_xlim(*stretch)
-        _force(column, flight, stretch)
+        _force(column, flight, stretch, detector)
         if windows:
             _windows(column[2], flight, stretch)
         label(column[-1], x="time of the log, s")
@@ -100,27 +102,22 @@ def _words(flight: "Flight") -> str:
     return f"{flight.score['launch']['detector']}: {words}; {of['rate']:.4g} Hz{gaps}"
 
 
-def _force(column: "Sequence[Axes]", flight: "Flight", stretch: Stretch) -> None:
+def _force(column: "Sequence[Axes]", flight: "Flight", stretch: Stretch, detector: DetectorSettings) -> None:
     """Specific force along x above, along y and z below, in g."""
     for row, axis, colour in ((0, "fx", BLACK), (1, "fy", SKY), (1, "fz", BLUE)):
         times, f = thin(*_columns(flight, "accelerometer", axis, stretch))
         marker = "." if times.size <= DOTS else ""
         name = f"$f_{axis[1]}$"
         column[row].plot(times, f / STANDARD_GRAVITY, color=colour, linewidth=0.8, marker=marker, label=name)
-    for name, level in _levels(flight.scenario["detector"]).items():
+    for name, level in _levels(detector).items():
         g = level / STANDARD_GRAVITY
         column[0].axhline(g, color=RED, linewidth=1.0, label=f"{name} {g:.2f} g")
 
 
-def _levels(detector: dict[str, Any]) -> dict[str, float]:
-    """Level that the force is held against, m/s², by its name; none of the rules that have their own."""
-    kind = detector["kind"]
-    if kind == "adaptive-cusum":
-        return {"reference": reference(detector["threshold"], detector["adaptive"].get("reference"))}
-    group = next((detector[name] for name in ("cusum", "glr") if kind.startswith(name)), None)
-    if group is not None:
-        return {"reference": group["reference"]}
-    return {"threshold": detector["threshold"]} if kind.endswith(("window", "threshold")) else {}
+def _levels(detector: DetectorSettings) -> dict[str, float]:
+    """Levels that the detector's kind draws across the force, m/s², by their names."""
+    lines = if_known(detector).lines
+    return {} if lines is None else dict(lines(detector))
 
 
 def _windows(axes: "Axes", flight: "Flight", stretch: Stretch) -> None:

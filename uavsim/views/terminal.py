@@ -17,13 +17,14 @@ from rich.table import Table
 from rich.text import Text
 
 from uavsim.plants.rig_settings import AIRCRAFT
-from uavsim.score import launch_axis
+from uavsim.scenario import scenario_of
 from uavsim.views.faults import told
 from uavsim.views.notes import notes
 from uavsim.views.text import visible
 
 if TYPE_CHECKING:
     from uavsim.flight import Flight
+    from uavsim.scenario import Scenario
     from uavsim.studies.batch import Batch
     from uavsim.studies.cost import Cost, OnboardCost
     from uavsim.studies.quantiles import QuantileBand
@@ -94,17 +95,17 @@ def _milli(value: float | None) -> float | None:
 
 def print_score(flight: "Flight") -> None:
     """Print a flight's score with its units, the requirements, and what deserves a remark."""
-    score, console = flight.score, _console()
+    score, scenario, console = flight.score, scenario_of(flight), _console()
     right = score["outcome"] == score["expected"]
     verdict = "as expected" if right else f"expected: {score['expected']}"
     if not all(r["met"] for r in score["requirements"]):
         verdict += "; a requirement is not met"
     outcome = (score["outcome"], f"bold {'green' if right else 'red'}")
-    head = words("\n", (flight.scenario["name"], "bold"), f", seed {score['seed']}: ", outcome, f" ({verdict})\n")
-    _print(console, head, _launch_table(flight), "")
+    head = words("\n", (scenario.name, "bold"), f", seed {score['seed']}: ", outcome, f" ({verdict})\n")
+    _print(console, head, _launch_table(score, scenario), "")
     if score.get("reason"):
         _print(console, words("reason: ", score["reason"]), "")
-    flew = flight.scenario["plant"]["kind"] == AIRCRAFT
+    flew = scenario.plant.kind == AIRCRAFT
     if flew or score["airspeed"]["samples"]:
         phases = ("stroke", "transition", "cruise") if flew else ()
         _print(console, _airspeed_table(score["airspeed"], phases), "", _pressure_table(score["pressure"]), "")
@@ -114,10 +115,9 @@ def print_score(flight: "Flight") -> None:
         console.print(f"Note: {note}")
 
 
-def _launch_table(flown: "Flight") -> Table:
+def _launch_table(score: dict[str, Any], scenario: "Scenario") -> Table:
     """Return the launch's times and what followed; of a rig only what it has."""
-    launch, flight, plant = flown.score["launch"], flown.score["flight"], flown.scenario["plant"]["kind"]
-    axis = launch_axis(plant, flown.scenario["detector"]["axes"])
+    launch, flight, axis = score["launch"], score["flight"], scenario.launch_axis
     force = f"{'−' if axis[0] == '-' else ''}f_{axis[1]}"
     left: tuple[tuple[str, str, str], ...] = (
         ("release", _number(launch["release_time"]), "s"),
@@ -141,7 +141,7 @@ def _launch_table(flown: "Flight") -> Table:
     table = Table(box=None, show_header=False, pad_edge=False)
     for justify in ("left", "right", "left") * 2:
         table.add_column(justify=justify, no_wrap=True)
-    if plant != AIRCRAFT:
+    if scenario.plant.kind != AIRCRAFT:
         left = tuple(row for row in left if row[1] != "–" or row[0] == "launch detected")
         right = tuple(row for row in right if row[1] != "–")
     for one, other in zip_longest(left, right, fillvalue=("", "", "")):
@@ -212,7 +212,7 @@ def print_batch(flown: "Batch") -> None:
     table = _quantile_table(flown)
     if table.row_count:
         _print(console, table, "")
-    wrong = told(flown.scenario.to_dict(), flown.scenario.duration)
+    wrong = told(flown.scenario, flown.scenario.duration)
     if wrong:
         _print(console, f"Set to go wrong: {wrong}; √PCRB knows of no fault")
     bounds = against_bound(flown)

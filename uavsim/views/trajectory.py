@@ -64,7 +64,7 @@ def draw(record: Record) -> "Figure | None":
 
 def _flew(record: Record) -> bool:
     """Whether there is a way to draw; a flight can diverge before its first row, and a rig has none."""
-    if record.plant not in ("", AIRCRAFT):
+    if record.scenario.plant.kind != AIRCRAFT:
         return False
     return bool(np.isfinite(record.flight.truth["altitude"].to_numpy()).sum() > 1)
 
@@ -97,9 +97,9 @@ def _over_time(column: "Sequence[Axes]", record: Record, stretch: Stretch) -> No
 def _path(axes: "Axes", record: Record, stretch: Stretch) -> None:
     """Height over distance, coloured by phase, with what happened on the way."""
     t, north, east, altitude = (record.column("truth", name) for name in ("t", "north", "east", "altitude"))
-    heading = np.radians(record.settings("launcher")["heading_deg"])
+    heading = np.radians(record.scenario.launcher.heading_deg)
     distance = north * np.cos(heading) + east * np.sin(heading)
-    height = altitude - record.settings("environment")["ground_elevation"]
+    height = altitude - record.scenario.environment.ground_elevation
     rail = ("rail", t[0], record.phases[0][1] if record.phases else t[-1])
     for name, first, last in (rail, *record.phases):
         x, y = (a[:: max(1, a.size // COLUMNS)] for a in list(within((first, last), t, distance, height))[1:])

@@ -162,7 +162,7 @@ class Kind:
     """
 
     name: str
-    cls: Callable[..., Detector]
+    cls: Callable[..., Any]
     build: "Callable[[DetectorSettings, float], Detector]"
     reads: tuple[str, ...] = ()
     options: type | None = None

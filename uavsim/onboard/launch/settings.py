@@ -83,6 +83,15 @@ def kind_of(settings: DetectorSettings) -> Kind:
     return KINDS[settings.kind]
 
 
+def if_known(settings: DetectorSettings) -> Kind:
+    """Return the kind that settings name; one that says nothing of itself if it is not registered here."""
+    return KINDS[settings.kind] if settings.kind in KINDS else Kind(settings.kind, object, _nobody)
+
+
+def _nobody(settings: DetectorSettings, _: float) -> Detector:
+    raise ValueError(f"detector {settings.kind!r} is not registered")
+
+
 def unread(settings: DetectorSettings) -> tuple[str, ...]:
     """Keys that differ from their defaults, though the kind that was chosen does not read them; `cusum.limit`."""
     passed = {"kind", "axes", *kind_of(settings).reads}

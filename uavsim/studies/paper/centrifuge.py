@@ -11,7 +11,7 @@ from typing import Any
 
 from uavsim.cosim import fly
 from uavsim.flight import Flight
-from uavsim.scenario import load_scenario
+from uavsim.scenario import load_scenario, scenario_of
 from uavsim.studies.paper.entry import Entry
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -49,12 +49,12 @@ class CentrifugeStudy:
                 "the two printed readings; that 4.1 g is below the detector's level and 15.15 g above it is not.",
                 details={
                     "error_percent": {
-                        load: 100.0 * (held(flight) / flight.scenario["plant"]["centrifuge"]["load_g"] - 1.0)
+                        load: 100.0 * (held(flight) / scenario_of(flight).plant.centrifuge.load_g - 1.0)
                         for load, flight in self.flights.items()
                     },
                     "drawn_units": UNITS,
                     "recognised_of_drawn_units": dict(self.drawn),
-                    "detector": {load: flight.scenario["detector"]["kind"] for load, flight in self.flights.items()},
+                    "detector": {load: scenario_of(flight).detector.kind for load, flight in self.flights.items()},
                 },
             )
         }
@@ -62,10 +62,10 @@ class CentrifugeStudy:
 
 def held(flight: Flight) -> float:
     """Mean reading towards the hub while the speed is held, g."""
-    settings = flight.scenario["plant"]["centrifuge"]
-    start = flight.score["launch"]["release_time"] + settings["spin_up"]
+    settings = scenario_of(flight).plant.centrifuge
+    start = flight.score["launch"]["release_time"] + settings.spin_up
     t, force = (flight.accelerometer[name].to_numpy() for name in ("t", "fz"))
-    return float(force[(t >= start) & (t <= start + settings["hold"])].mean()) / STANDARD_GRAVITY
+    return float(force[(t >= start) & (t <= start + settings.hold)].mean()) / STANDARD_GRAVITY
 
 
 def _recognised(flight: Flight) -> bool:

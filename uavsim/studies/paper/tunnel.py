@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from uavsim.cosim import fly
 from uavsim.flight import Flight
-from uavsim.scenario import load_scenario
+from uavsim.scenario import load_scenario, scenario_of
 from uavsim.studies.paper.entry import Entry
 
 Array = NDArray[np.float64]
@@ -201,11 +201,11 @@ def _pooled(flights: list[Flight], key: str) -> dict[str, float]:
 
 def levels(flight: Flight) -> list[tuple[float, float, float]]:
     """First and last time, s, and speed, m/s, of each level, at rest included."""
-    tunnel, start = flight.scenario["plant"]["wind_tunnel"], flight.score["launch"]["release_time"]
+    tunnel, start = scenario_of(flight).plant.wind_tunnel, flight.score["launch"]["release_time"]
     found, time = [(0.0, start, 0.0)], start
-    for speed in tunnel["speeds"]:
-        end = time + tunnel["ramp"] + tunnel["hold"]
-        found.append((time + tunnel["ramp"], end, speed))
+    for speed in tunnel.speeds:
+        end = time + tunnel.ramp + tunnel.hold
+        found.append((time + tunnel.ramp, end, speed))
         time = end
     return found
 
@@ -230,7 +230,7 @@ def plateaus(flights: Mapping[str, list[Flight]]) -> tuple[Plateau, ...]:
 def _steady(flight: Flight, level: int) -> tuple[NDArray[np.bool_], Callable[[str], Array]]:
     """Return which estimates are of a level that has settled, and what gives their errors, m/s."""
     first, last, _ = levels(flight)[level]
-    lag = flight.scenario["plant"]["wind_tunnel"]["settling"] if level else 0.0
+    lag = scenario_of(flight).plant.wind_tunnel.settling if level else 0.0
     t = flight.estimate["t"].to_numpy()
     true = np.interp(t, flight.truth["t"].to_numpy(), flight.truth["airspeed"].to_numpy())
     rows = (t >= first + STEADY * lag) & (t < last) & np.isfinite(flight.estimate["airspeed_raw"].to_numpy())
@@ -242,8 +242,8 @@ def allowed(flight: Flight) -> tuple[float, float]:
 
     After the first step, from rest, an error is never taken to be larger than the speed itself: to say 0 has that.
     """
-    lag = flight.scenario["plant"]["wind_tunnel"]["settling"]
-    rate = flight.scenario["air_data"]["rate"]
+    scenario = scenario_of(flight)
+    lag, rate = scenario.plant.wind_tunnel.settling, scenario.air_data.rate
     whole, fast = [], []
     last = 0.0
     for i, (first, end, speed) in enumerate(levels(flight)):

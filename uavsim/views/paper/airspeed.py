@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim import airdata
+from uavsim.scenario import scenario_of
 from uavsim.studies.paper import air_data, pipe
 from uavsim.studies.paper.tunnel import BEST, STATIC_ERROR
 from uavsim.views.curves import dots, fit, thin, truth
@@ -175,8 +176,8 @@ def pipes(found: "Reproduction") -> "Figure":
 
 def _step(flight: "Flight") -> tuple[float, float]:
     """First and last time around the step that is drawn large, s."""
-    tunnel = flight.scenario["plant"]["wind_tunnel"]
-    at = flight.score["launch"]["release_time"] + STEP_SHOWN * (tunnel["ramp"] + tunnel["hold"])
+    tunnel = scenario_of(flight).plant.wind_tunnel
+    at = flight.score["launch"]["release_time"] + STEP_SHOWN * (tunnel.ramp + tunnel.hold)
     return at - ENLARGED[0], at + ENLARGED[1]
 
 

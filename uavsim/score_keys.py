@@ -1,0 +1,28 @@
+"""Names of the numbers that a score holds, group by group, in its order: what a requirement may bound."""
+
+PHASES = ("stroke", "transition", "cruise")
+LAUNCH = (
+    *("release_time", "true_time", "crossing_time", "detected_time", "latency", "latency_from_crossing"),
+    *("detections", "false_detections"),
+)
+AIRSPEED = (
+    *("rmse", "rmse_raw", "reduction_percent", "bias", "max_error", "nees_mean"),
+    *("coverage_95", "coverage_1_sigma", "coverage_2_sigma", "coverage_3_sigma", "valid_fraction", "samples"),
+    *("nis_mean", "whiteness"),
+)
+PRESSURE = ("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean")
+PRESSURES = ("total", "static")
+FLIGHT = (
+    *("rail_exit_time", "rail_exit_speed", "wing_start_time", "wing_out_time"),
+    *("cruise_airspeed", "cruise_airspeed_sd", "duration", "rail_exit_altitude", "lowest_altitude_after_exit"),
+)
+
+NUMBERS = (
+    "seed",
+    *(f"launch.{name}" for name in LAUNCH),
+    *(f"airspeed.{name}" for name in AIRSPEED),
+    *(f"airspeed.{phase}.{name}" for phase in PHASES for name in AIRSPEED),
+    *(f"pressure.{channel}.{name}" for channel in PRESSURES for name in PRESSURE),
+    *(f"flight.{name}" for name in FLIGHT),
+)
+"""Each by its key, joined by dots."""
