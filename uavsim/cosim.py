@@ -22,7 +22,6 @@ from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import Estimate, FlightComputer
 from uavsim.plants.plant import Plant, Run
-from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import PLANT_STEP, Scenario, load_scenario
 from uavsim.score import Judged, score
 from uavsim.truth import STANDARD_GRAVITY
@@ -30,8 +29,6 @@ from uavsim.truth import STANDARD_GRAVITY
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-    from uavsim.plants.jsbsim import JsbsimSettings
 
 STEP_RATE = 1.0 / PLANT_STEP  # Hz, 1000 exactly
 CHUNK = 500  # steps between two looks at the progress
@@ -169,14 +166,13 @@ class Cosimulation:
         self.plant = make_plant(scenario, self.draws) if plant is None else plant
         streams = Streams(scenario.seed, index)
         release = self.draws.release_time
-        pushed = scenario.plant.kind == AIRCRAFT  # a rig does not make an airframe ring
-        push = scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor if pushed else 0.0
+        push = scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor
         self.vibration = Vibration(
             scenario.vibration,
             streams,
             dt=1.0 / STEP_RATE,
             release_time=release,
-            plateau=push,
+            plateau=push if scenario.plant.chosen.rings else 0.0,
             rise=scenario.launcher.rise,
             scale=scenario.accelerometer.vibration_scale,
         )
@@ -256,12 +252,9 @@ class Cosimulation:
         return _flight(self)
 
 
-def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
-    """Settings of the aircraft's plant for a scenario's flight."""
-    from uavsim.plants.jsbsim import JsbsimSettings
-
-    return JsbsimSettings(
-        aircraft=scenario.aircraft,
+def plant_settings(scenario: Scenario, draws: Draws) -> Run:
+    """What the plant of a scenario's flight is told."""
+    return Run(
         environment=scenario.environment,
         launcher=scenario.launcher,
         duration=scenario.duration,
@@ -269,34 +262,20 @@ def plant_settings(scenario: Scenario, draws: Draws) -> "JsbsimSettings":
         force_factor=draws.force_factor,
         random_seed=draws.plant_seed,
         step_rate=STEP_RATE,
+        aircraft=scenario.aircraft,
         accelerometer_position=scenario.accelerometer.position,
     )
 
 
 def make_plant(scenario: Scenario, draws: Draws) -> Plant:
-    """Make the plant of a scenario's flight: the aircraft, or the rig that it chooses.
+    """Make the plant of a scenario's flight.
 
     Raises
     ------
     ValueError
         An aircraft or property that does not exist; a rig that cannot be.
     """
-    if scenario.plant.kind == AIRCRAFT:
-        from uavsim.plants.jsbsim import JsbsimPlant
-
-        return JsbsimPlant(plant_settings(scenario, draws))
-    from uavsim.plants.rigs import RIGS
-
-    run = Run(
-        environment=scenario.environment,
-        launcher=scenario.launcher,
-        duration=scenario.duration,
-        release_time=draws.release_time,
-        force_factor=draws.force_factor,
-        random_seed=draws.plant_seed,
-        step_rate=STEP_RATE,
-    )
-    return RIGS[scenario.plant.kind](scenario.plant, run)
+    return scenario.plant.chosen.make(scenario.plant.own, plant_settings(scenario, draws))
 
 
 def fly(

@@ -29,8 +29,8 @@ from uavsim.onboard.launch import DetectorSettings
 from uavsim.onboard.launch.settings import USES, need, unread
 from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
+from uavsim.plants.choice import PlantSettings
 from uavsim.plants.hangar import find_aircraft, hangar
-from uavsim.plants.rig_settings import AIRCRAFT, PlantSettings, length
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.score_keys import NUMBERS
 from uavsim.settings import SettingError
@@ -170,7 +170,7 @@ class Scenario:
     def launch_axis(self) -> str:
         """Signed body axis of the launch: +x of an aircraft; of a rig the detector's, if it is one."""
         axes = self.detector.axes
-        return "+x" if self.plant.kind == AIRCRAFT or isinstance(axes, str) or len(axes) != 1 else axes[0]
+        return "+x" if self.plant.chosen.flies or isinstance(axes, str) or len(axes) != 1 else axes[0]
 
     def with_seed(self, seed: int) -> "Scenario":
         """The same scenario with other draws."""
@@ -385,7 +385,7 @@ def _check_times(s: Scenario) -> None:
             "launcher.wait_max",
             "launcher.wait_min",
         )
-    run = length(s.plant)
+    run = s.plant.length
     if run and s.duration < launcher.wait_max + run:
         raise SettingError(
             f"duration = {s.duration:g}: must hold the longest wait, launcher.wait_max = {launcher.wait_max:g} s, and "

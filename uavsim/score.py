@@ -27,7 +27,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.consistency import LAGS, LEAST, ljung_box
-from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.score_keys import PHASES, PRESSURE, PRESSURES
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -90,7 +89,7 @@ class Judged:
     @property
     def is_rig(self) -> bool:
         """Whether it was on a rig and not in flight."""
-        return self.scenario.plant.kind != AIRCRAFT
+        return not self.scenario.plant.chosen.flies
 
     @cached_property
     def time(self) -> Array:
