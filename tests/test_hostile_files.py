@@ -34,7 +34,6 @@ from sensors.pressure_description import PressureDescription
 from sensors.unit import Unit
 from uavsim import cli
 from uavsim.cosim import Cosimulation
-from uavsim.plants.rig_settings import length
 from uavsim.scenario import MOST_READINGS, Scenario, keys, load_scenario, packaged_names
 from uavsim.settings import LARGEST_NUMBER, LONGEST_TEXT, MOST_ENTRIES, MOST_GROUPS, SMALLEST_NUMBER, hint_of
 from uavsim.views import terminal
@@ -494,7 +493,7 @@ def spoiled_scenario(seed: int, tmp_path: Path) -> bool:
     scenario = one_line(lambda: load_scenario(file), f"{file}: ")
     if scenario is None:
         return False
-    duration = scenario.launcher.wait_max + max(length(scenario.plant), 1.5)
+    duration = scenario.launcher.wait_max + max(scenario.plant.length, 1.5)
     if duration <= LONGEST_RUN:
         short = replace(scenario, duration=duration)
         simulation = one_line(lambda: Cosimulation(short), "")  # only JSBSim knows whether it has a property

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.plants.rig_settings import PlantSettings
+from uavsim.plants.choice import PlantSettings
 from uavsim.scenario import Scenario
 from uavsim.score import Judged, outcome, score
 from uavsim.truth import STANDARD_GRAVITY

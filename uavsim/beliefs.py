@@ -27,7 +27,6 @@ from sensors.unit import G0, draw_error, unit_vector
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_PRESSURE, STANDARD_TEMPERATURE
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
-from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import Scenario
 
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
@@ -94,7 +93,7 @@ def believed_air(scenario: Scenario) -> EstimatorSettings:
 
 def _bounded(scenario: Scenario) -> EstimatorSettings:
     """Return the estimator's settings with the greatest airspeed and force that there can be."""
-    flown, settings = scenario.plant.kind == AIRCRAFT, scenario.estimator
+    flown, settings = scenario.plant.chosen.flies, scenario.estimator
     aided, fastest = settings.aided, settings.fastest
     if fastest is None:
         fastest = min(FASTER * scenario.flight_computer.airspeed, FASTEST) if flown else FASTEST

@@ -23,6 +23,7 @@ from uavsim.onboard.airspeed.kinds import KINDS as ESTIMATORS
 from uavsim.onboard.airspeed.kinds import estimator
 from uavsim.onboard.launch.kinds import KINDS as DETECTORS
 from uavsim.onboard.launch.kinds import detector
+from uavsim.plants import choice as _choice  # noqa: F401 (registers ours)
 from uavsim.plants.kinds import KINDS as PLANTS
 from uavsim.plants.kinds import plant
 from uavsim.registry import Registry
@@ -109,7 +110,7 @@ def known(what: str) -> list[str]:
 def unregistered(what: str, name: str) -> str:
     """Say that nobody has registered a name, which there are, and how to register one."""
     if name.endswith(".py") or "/" in name:
-        return f"{shown(name)} names a file, and a scenario runs none; fly it with --plugin, and name here what it registers"
+        return f"{shown(name)} names a file, and a scenario runs none; give it to --plugin and name what it registers"
     names = known(what)
     near = nearest(name, names, cutoff=0.4)
     hint = f"did you mean {near!r}? " if near else ""

@@ -21,7 +21,7 @@ from sensors.choice import nearest, shown
 from sensors.data_files import parse_toml, read_toml
 from sensors.settings import Fault, PortFault
 from sensors.vibration import check as check_vibration
-from uavsim import inputs, plugins, settings
+from uavsim import inputs, settings
 from uavsim.files import without_none
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
@@ -30,9 +30,10 @@ from uavsim.onboard.launch.kinds import Need
 from uavsim.onboard.launch.settings import kind_of, unread
 from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
+from uavsim.plants.choice import PlantSettings
 from uavsim.plants.hangar import find_aircraft, hangar
-from uavsim.plants.rig_settings import AIRCRAFT, PlantSettings, length
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
+from uavsim.plugins import PluginError, Source, check_options, find, of_class, plugged_in, source_of
 from uavsim.score_keys import NUMBERS
 from uavsim.settings import SettingError
 
@@ -152,7 +153,7 @@ class Scenario:
     mismatch: MismatchSettings = field(default_factory=MismatchSettings)
     flight_computer: FlightComputerSettings = field(default_factory=FlightComputerSettings)
     requirements: tuple[Requirement, ...] = ()
-    plugins: tuple[plugins.Source, ...] = ()
+    plugins: tuple[Source, ...] = ()
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any], where: str = "scenario") -> "Scenario":
@@ -177,7 +178,7 @@ class Scenario:
     def launch_axis(self) -> str:
         """Signed body axis of the launch: +x of an aircraft; of a rig the detector's, if it is one."""
         axes = self.detector.axes
-        return "+x" if self.plant.kind == AIRCRAFT or isinstance(axes, str) or len(axes) != 1 else axes[0]
+        return "+x" if self.plant.chosen.flies or isinstance(axes, str) or len(axes) != 1 else axes[0]
 
     def with_seed(self, seed: int) -> "Scenario":
         """The same scenario with other draws."""
@@ -365,24 +366,43 @@ def _with_inputs(s: Scenario, values: Mapping[str, Any]) -> Scenario:
 
 def _with_plugins(s: Scenario) -> Scenario:
     """The same with each kind's own options as it declares them, and with who it is, if it is not ours."""
-    named = {"detector": s.detector.kind, "estimator": s.estimator.kind}
+    named = {"detector": s.detector.kind, "estimator": s.estimator.kind, "plant": s.plant.kind}
     for what, name in named.items():
         key, was = f"{what}.kind", next((p for p in s.plugins if (p.group, p.name) == (f"uavsim.{what}s", name)), None)
         try:
-            kind = plugins.find(what, name)
-        except plugins.PluginError as error:
+            kind = find(what, name)
+        except PluginError as error:
             flown = "" if was is None else f"; it was flown with {was}"
             raise SettingError(f"{key} = {error}{flown}", key) from None
         group = getattr(s, what)
-        s = replace(s, **{what: replace(group, options=plugins.check_options(what, kind.options, group.options))})
-        if was is not None and not was.is_(now := plugins.source_of(what, kind)):
+        s = replace(s, **{what: replace(group, options=check_options(what, kind.options, group.options))})
+        if was is not None and not was.is_(now := source_of(what, kind)):
             raise SettingError(
                 f"{key}: was flown with {was}, and here is {now}; take [[plugins]] out of its scenario.toml to fly it "
                 "with this one",
                 key,
                 "plugins",
             )
-    return replace(s, plugins=plugins.plugged_in(named))
+    return replace(s, plugins=plugged_in(named))
+
+
+def with_kinds(s: Scenario, **chosen: Any) -> Scenario:
+    """The same scenario with other kinds, by name or class: `detector`, `estimator`, `plant`; None leaves it.
+
+    Raises
+    ------
+    ValueError
+        One line: it is not registered, no such class, or does not suit the scenario.
+    """
+    values = s.to_dict()
+    for what, named in chosen.items():
+        if named is None:
+            continue
+        name = named if isinstance(named, str) else of_class(what, named)
+        own = values[what] if name == values[what]["kind"] else {}
+        kept = {"axes": values[what]["axes"]} if what == "detector" else {}
+        values[what] = {**own, **kept, "kind": name}
+    return Scenario.from_dict(values, s.name) if values != s.to_dict() else s
 
 
 def _airframe(model: str) -> str:
@@ -417,7 +437,7 @@ def _check_times(s: Scenario) -> None:
             "launcher.wait_max",
             "launcher.wait_min",
         )
-    run = length(s.plant)
+    run = s.plant.length
     if run and s.duration < launcher.wait_max + run:
         raise SettingError(
             f"duration = {s.duration:g}: must hold the longest wait, launcher.wait_max = {launcher.wait_max:g} s, and "
@@ -556,8 +576,8 @@ def _check_reach(s: Scenario, need: Need) -> None:
     if need.level >= reach:
         raise SettingError(
             f"detector.{need.level_key} = {need.level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be "
-            f"sure to show it; less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
-            f"{reach:.1f} m/s²",
+            f"sure to show it; less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the "
+            f"limit is {reach:.1f} m/s²",
             f"detector.{need.level_key}",
             "accelerometer",
         )

@@ -12,7 +12,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from uavsim.plants.columns import FT, INCH, INDEX, SLUG, SLUG_FT2
-from uavsim.plants.jsbsim import JsbsimPlant, JsbsimSettings
+from uavsim.plants.jsbsim import JsbsimPlant
+from uavsim.plants.plant import Run
 from uavsim.plants.rail import CONTACT_FREQUENCY, DAMPING_RATIO, body_axes
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.truth import STANDARD_GRAVITY
@@ -33,9 +34,7 @@ class Vacuum(JsbsimPlant):
 def launch(
     launcher: LauncherSettings, kind: type[JsbsimPlant] = JsbsimPlant, duration: float = 1.0, **more: Any
 ) -> JsbsimPlant:
-    settings = JsbsimSettings(
-        AircraftSettings(), more.pop("environment", EnvironmentSettings()), launcher, duration, RELEASE, **more
-    )
+    settings = Run(more.pop("environment", EnvironmentSettings()), launcher, duration, RELEASE, **more)
     plant = kind(settings)
     for _ in range(round(duration * 1000)):
         plant.step()
@@ -154,9 +153,7 @@ def test_specific_force_is_the_sensors_acceleration_less_gravity(position: tuple
     In air, wings opening at full speed, with wind: all terms of the lever arm and the moving centre of gravity count.
     Tolerance 0.03 m/s^2 rms of a second difference over 4 ms, away from the edges of the contact forces.
     """
-    settings = JsbsimSettings(
-        AircraftSettings(), WIND, LauncherSettings(), 1.4, RELEASE, accelerometer_position=position
-    )
+    settings = Run(WIND, LauncherSettings(), 1.4, RELEASE, accelerometer_position=position)
     plant = JsbsimPlant(settings)
     for k in range(1400):
         if k == 700:
@@ -207,7 +204,7 @@ def test_headwind_is_airspeed_on_the_rail() -> None:
 def test_gust_has_its_peak_shape_and_time() -> None:
     """A one-minus-cosine gust from ahead, its peak in the middle of its length, `gust_delay` after the wing is out."""
     air = EnvironmentSettings(gust_speed=4.0, gust_length_s=0.4, gust_delay=0.3)
-    plant = JsbsimPlant(JsbsimSettings(AircraftSettings(), air, LauncherSettings(), 2.0, RELEASE))
+    plant = JsbsimPlant(Run(air, LauncherSettings(), 2.0, RELEASE))
     for k in range(2000):
         if k == 650:
             plant.command((1.0, 0.0, 0.1, 0.0, 1.0))
@@ -238,7 +235,7 @@ def test_mass_is_what_the_aircraft_weighs(catapult: JsbsimPlant) -> None:
 
 def test_a_flight_that_diverges_beyond_sound_still_gives_its_record() -> None:
     """The truth's equations take any Mach number; that the state is no longer finite is told, not raised."""
-    plant = JsbsimPlant(JsbsimSettings(AircraftSettings(), EnvironmentSettings(), LauncherSettings(), 0.2, RELEASE))
+    plant = JsbsimPlant(Run(EnvironmentSettings(), LauncherSettings(), 0.2, RELEASE))
     for k in range(100):
         if k == 97:
             plant._set("atmosphere/wind-north-fps", 1e9)
@@ -252,11 +249,7 @@ def test_the_accelerometers_place_is_forward_right_and_down_of_the_eyepoint() ->
     """Structural axes point aft and up: 1 m forward, 2 m right, 3 m down of it, exactly."""
     short = LauncherSettings()
     here, there = (
-        JsbsimPlant(
-            JsbsimSettings(
-                AircraftSettings(), EnvironmentSettings(), short, 0.01, RELEASE, accelerometer_position=place
-            )
-        )
+        JsbsimPlant(Run(EnvironmentSettings(), short, 0.01, RELEASE, accelerometer_position=place))
         for place in ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0))
     )
     moved = np.subtract(there._lever(there.row), here._lever(here.row))

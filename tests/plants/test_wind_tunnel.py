@@ -15,12 +15,11 @@ from scipy.stats import chi2
 
 from uavsim import airdata, fly, settings
 from uavsim.cosim import replay
+from uavsim.plants.choice import PlantSettings
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import room
-from uavsim.plants.rig_settings import PlantSettings, length
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
-from uavsim.plants.wind_tunnel import stream, turbulence, wind_tunnel
-from uavsim.plants.wind_tunnel_settings import WindTunnelSettings
+from uavsim.plants.wind_tunnel import WindTunnelSettings, stream, turbulence, wind_tunnel
 from uavsim.settings import SettingError
 from uavsim.truth import STANDARD_GRAVITY, UNITS
 
@@ -77,8 +76,8 @@ def test_a_run_takes_its_ramps_and_holds() -> None:
     plant = PlantSettings(
         kind="wind-tunnel", wind_tunnel=WindTunnelSettings(speeds=(1.0, 2.0, 3.0), ramp=2.0, hold=5.0)
     )
-    assert length(plant) == 21.0
-    assert length(replace(plant, wind_tunnel=WindTunnelSettings(machs=(0.3, 0.5), hold=4.0))) == 8.0
+    assert plant.length == 21.0
+    assert replace(plant, wind_tunnel=WindTunnelSettings(machs=(0.3, 0.5), hold=4.0)).length == 8.0
 
 
 @pytest.mark.parametrize(

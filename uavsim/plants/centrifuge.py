@@ -11,14 +11,52 @@ right-handed, and at rest it is a body that stands on its tail). What is felt is
 so that the load at the sensor differs from what was set by r/arm. g is the standard one.
 """
 
+from dataclasses import dataclass
 from math import pi, sqrt
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Interval
 
+from uavsim.plants.kinds import Kind
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import PrescribedPlant
-from uavsim.plants.rig_settings import CentrifugeSettings
 from uavsim.truth import STANDARD_GRAVITY
+
+
+@dataclass(frozen=True, slots=True)
+class CentrifugeSettings:
+    """A centrifuge, `plant.kind = "centrifuge"`: the arm at rest, spun up, held, spun down, at rest.
+
+    It begins to turn when the launcher's wait is over.
+
+    Attributes
+    ----------
+    arm
+        Radius that the load is set for, m.
+    load_g
+        Centripetal load at that radius while the speed is held, g; the speed is the root of load/arm.
+    radius_error
+        How much further out the sensor sits than the arm is long, m.
+    spin_up
+        Time in which the speed grows evenly, s.
+    hold
+        Time for which it is held, s.
+    spin_down
+        Time in which it goes back to 0 evenly, s.
+    """
+
+    arm: Annotated[float, Interval(ge=0.05, le=20)] = 1.0
+    load_g: Annotated[float, Interval(ge=0, le=200)] = 4.0
+    radius_error: Annotated[float, Interval(ge=-1, le=1)] = 0.0
+    spin_up: Annotated[float, Interval(ge=0.01, le=600)] = 5.0
+    hold: Annotated[float, Interval(ge=0, le=3000)] = 8.0
+    spin_down: Annotated[float, Interval(ge=0.01, le=600)] = 5.0
+
+    @property
+    def length(self) -> float:
+        """How long the run takes after the wait, s."""
+        return self.spin_up + self.hold + self.spin_down
 
 
 def centrifuge(settings: CentrifugeSettings, run: Run) -> PrescribedPlant:
@@ -62,3 +100,6 @@ def centrifuge(settings: CentrifugeSettings, run: Run) -> PrescribedPlant:
         "r": still,
     }
     return PrescribedPlant(run, columns)
+
+
+KIND = Kind("centrifuge", centrifuge, group="centrifuge", launches=False)

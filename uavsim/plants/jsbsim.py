@@ -15,7 +15,6 @@ The only module that imports jsbsim. Facts it rests on:
 import ctypes
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from difflib import get_close_matches
 from math import inf, isfinite, pi, radians
 from pathlib import Path
@@ -53,9 +52,9 @@ from uavsim.plants.columns import (
     WING,
 )
 from uavsim.plants.hangar import find_airframe, is_packaged
-from uavsim.plants.plant import Commands
+from uavsim.plants.plant import Commands, Run
 from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
-from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
+from uavsim.plants.settings import AircraftSettings
 
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
 WING_OUT = 0.99
@@ -63,24 +62,6 @@ WING_OUT = 0.99
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
 Row = tuple[float, ...]
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class JsbsimSettings:
-    """Everything that a JSBSim flight needs: `step_rate` in Hz, the seed of its turbulence, the drawn launch.
-
-    `accelerometer_position` is from the aircraft's EYEPOINT, body axes forward-right-down, m.
-    """
-
-    aircraft: AircraftSettings
-    environment: EnvironmentSettings
-    launcher: LauncherSettings
-    duration: float
-    release_time: float
-    force_factor: float = 1.0
-    random_seed: int = 1
-    step_rate: float = 1000.0
-    accelerometer_position: Vector = (0.0, 0.0, 0.0)
 
 
 class _Silence(FGLogger):
@@ -117,7 +98,7 @@ class JsbsimPlant:
         Unknown aircraft; a property that it does not have or that is read-only.
     """
 
-    def __init__(self, settings: JsbsimSettings) -> None:
+    def __init__(self, settings: Run) -> None:
         self.settings = settings
         self.dt = 1.0 / settings.step_rate
         self.k = 0

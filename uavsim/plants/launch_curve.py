@@ -16,17 +16,59 @@ samples at 1 kHz above three quarters of A): white noise alone gives them with a
 The way along the rail is the double integral of f_x - g sin θ while the push lasts.
 """
 
+from dataclasses import dataclass
 from math import cos, pi, radians, sin
+from typing import Annotated, Literal
 
 import numpy as np
+from annotated_types import Interval
 from numpy.typing import NDArray
 
+from uavsim.plants.kinds import Kind
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import PrescribedPlant
-from uavsim.plants.rig_settings import LaunchCurveSettings
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchCurveSettings:
+    """A prescribed launch force along body x, `plant.kind = "launch-curve"`.
+
+    Its level A is `launcher.peak_specific_force_g`, its elevation and wait are the launcher's, too.
+
+    Attributes
+    ----------
+    shape
+        "ring": rises, and rings about its plateau; "half-sine"; "trapezoid": rises, stays and falls.
+    length
+        From no force to no force, s.
+    rise
+        Time in which ring and trapezoid rise, s.
+    fall
+        Time in which they fall at the end, s.
+    ring_fraction
+        Amplitude of the ring at the start, as a fraction of A.
+    ring_hz
+        Its frequency, Hz.
+    ring_phase_deg
+        Its phase at the start, degrees.
+    ring_decay
+        Time in which it decays to 1/e, s.
+    noise_sd_g
+        Standard deviation of white noise on the curve, independent each ms, g.
+    """
+
+    shape: Literal["ring", "half-sine", "trapezoid"] = "ring"
+    length: Annotated[float, Interval(ge=0.01, le=10)] = 0.3
+    rise: Annotated[float, Interval(ge=0.001, le=1)] = 0.003
+    fall: Annotated[float, Interval(ge=0.001, le=1)] = 0.020
+    ring_fraction: Annotated[float, Interval(ge=0, le=5)] = 0.5
+    ring_hz: Annotated[float, Interval(gt=0, le=500)] = 120.0
+    ring_phase_deg: Annotated[float, Interval(ge=-360, le=360)] = 315.0
+    ring_decay: Annotated[float, Interval(gt=0, le=10)] = 0.050
+    noise_sd_g: Annotated[float, Interval(ge=0, le=50)] = 0.0
 
 
 def shape(settings: LaunchCurveSettings, t: Array) -> Array:
@@ -71,3 +113,6 @@ def launch_curve(settings: LaunchCurveSettings, run: Run) -> PrescribedPlant:
     noise = np.zeros((time.size, 3))
     noise[:, 0] = np.random.default_rng(run.random_seed).standard_normal(time.size)
     return PrescribedPlant(run, columns, noise * (settings.noise_sd_g * STANDARD_GRAVITY))
+
+
+KIND = Kind("launch-curve", launch_curve, group="launch_curve")

@@ -4,13 +4,13 @@ A plant steps at a fixed interval and keeps its own record, one row of truth a s
 does not have, as a centrifuge has no wing, is NaN there. Sensors read `force`, `air` and `flow`, and nothing else.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
+from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 
 Vector = tuple[float, float, float]
 Commands = tuple[float, float, float, float, float]
@@ -66,7 +66,7 @@ class Plant(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What every rig is told of the run: place and air, launcher, length, s, and what the seed has drawn.
+    """What every plant is told of the run: place and air, launcher, length, what the seed has drawn, and what flies.
 
     Attributes
     ----------
@@ -75,13 +75,17 @@ class Run:
     duration
         Of the record, s.
     release_time
-        When the rig begins, s.
+        When the latch lets go, or the rig begins, s.
     force_factor
         This run's force over the nominal one.
     random_seed
-        Of the rig's own noise.
+        Of the plant's own noise: turbulence, a curve's.
     step_rate
         Hz.
+    aircraft
+        Of the scenario; a rig flies none.
+    accelerometer_position
+        From the aircraft's EYEPOINT, body axes forward-right-down, m.
     """
 
     environment: EnvironmentSettings
@@ -91,6 +95,8 @@ class Run:
     force_factor: float = 1.0
     random_seed: int = 1
     step_rate: float = 1000.0
+    aircraft: AircraftSettings = field(default_factory=AircraftSettings)
+    accelerometer_position: Vector = (0.0, 0.0, 0.0)
 
     @property
     def time(self) -> NDArray[np.float64]:

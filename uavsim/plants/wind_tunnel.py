@@ -18,24 +18,75 @@ The head stands at the angles α and β to the stream, which blows to the south:
 the accelerometer feels 1 g.
 """
 
+from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, radians, sin
+from typing import Annotated
 from zlib import crc32
 
 import numpy as np
+from annotated_types import Interval, MinLen
 from numpy.typing import NDArray
 
 from uavsim import airdata
 from uavsim.airdata import GAMMA, GAS_CONSTANT_DRY_AIR
+from uavsim.plants.kinds import Kind
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import PrescribedPlant, room
-from uavsim.plants.wind_tunnel_settings import WindTunnelSettings
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
+Speed = Annotated[float, Interval(ge=0.0, le=300.0)]  # m/s
+Mach = Annotated[float, Interval(ge=0.0, le=0.9)]
+Angle = Annotated[float, Interval(ge=-80.0, le=80.0)]  # degrees
 
 HEAT_CAPACITY = GAMMA / (GAMMA - 1.0) * GAS_CONSTANT_DRY_AIR  # J/(kg K), c_p of dry air
 HALF_EXCESS = 0.5 * (GAMMA - 1.0)  # –, (γ - 1)/2: T_0/T = 1 + 0.2 M²
+
+
+@dataclass(frozen=True, slots=True)
+class WindTunnelSettings:
+    """A wind tunnel, `plant.kind = "wind-tunnel"`: at rest until the launcher's wait is over, then speed after speed.
+
+    Pressure and temperature of the room are those of the standard atmosphere at the place (`environment`).
+
+    Attributes
+    ----------
+    speeds
+        Airspeeds that are set, m/s, in their order.
+    machs
+        Mach numbers that are set, in place of the speeds.
+    hold
+        Time for which each is set, s.
+    ramp
+        Time in which the set value goes evenly from one to the next, before it is held, s.
+    settling
+        Time constant with which the air follows what is set, s.
+    turbulence
+        Standard deviation of the turbulence along the stream, as a share of the airspeed.
+    turbulence_length
+        Its scale length, m: the correlation time is that over the airspeed.
+    temperature_drift
+        Rate at which the air warms from the start of the record, K/s.
+    alpha_deg, beta_deg
+        Angle of attack and of sideslip at which the head stands in the stream, degrees.
+    """
+
+    speeds: Annotated[tuple[Speed, ...], MinLen(1)] = (5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0)
+    machs: tuple[Mach, ...] = ()
+    hold: Annotated[float, Interval(ge=0.1, le=600.0)] = 10.0
+    ramp: Annotated[float, Interval(ge=0.0, le=600.0)] = 0.0
+    settling: Annotated[float, Interval(ge=0.0, le=60.0)] = 0.5
+    turbulence: Annotated[float, Interval(ge=0.0, le=0.2)] = 0.0
+    turbulence_length: Annotated[float, Interval(ge=0.001, le=1000.0)] = 0.5
+    temperature_drift: Annotated[float, Interval(ge=-0.1, le=0.1)] = 0.0
+    alpha_deg: Angle = 0.0
+    beta_deg: Angle = 0.0
+
+    @property
+    def length(self) -> float:
+        """How long the run takes after the wait, s."""
+        return len(self.machs or self.speeds) * (self.ramp + self.hold)
 
 
 def corners(settings: WindTunnelSettings, start: float) -> tuple[Array, Array]:
@@ -166,3 +217,6 @@ def wind_tunnel(settings: WindTunnelSettings, run: Run) -> PrescribedPlant:
         "beta": np.full_like(speed, beta),
     }
     return PrescribedPlant(run, columns)
+
+
+KIND = Kind("wind-tunnel", wind_tunnel, group="wind_tunnel", launches=False)

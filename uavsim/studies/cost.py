@@ -24,7 +24,6 @@ from uavsim.cosim import Cosimulation, Draws, draw, plant_settings, tare_window
 from uavsim.onboard import airspeed, launch
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.plants.plant import Commands
-from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import Scenario
 
 CHUNK = 500  # plant steps
@@ -130,7 +129,7 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
         If it is a rig, which JSBSim does not fly.
         If the flight ends before its time; its last chunks would not compare.
     """
-    if scenario.plant.kind != AIRCRAFT:
+    if not scenario.plant.chosen.flies:
         raise ValueError(f"{scenario.name}: plant.kind = {scenario.plant.kind!r}: only a flight in JSBSim has it")
     leader = _TapedPlant(scenario)
     loop = Cosimulation(scenario, plant=leader)

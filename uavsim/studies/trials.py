@@ -25,7 +25,6 @@ from numpy.typing import NDArray
 from sensors import Accelerometer, Streams, Vibration
 from uavsim.cosim import STEP_RATE, draw, make_plant
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import Scenario
 from uavsim.score import Judged
 from uavsim.studies.detections import BatchDetector
@@ -180,7 +179,7 @@ def _fly(scenario: Scenario, index: int) -> _Flight:
     end = min(exit_time, float(judged.time[-1]))
     first = max(0, round((drawn.release_time - WAIT[0]) * STEP_RATE))
     nominal = scenario.launcher.peak_specific_force_g * G0 * drawn.force_factor
-    push = nominal if scenario.plant.kind == AIRCRAFT else 0.0
+    push = nominal if scenario.plant.chosen.rings else 0.0
     truth = LaunchTruth(onset, judged.crossing_time, float(axial.max()), end)
     rows: tuple[tuple[float, float, float], ...] = tuple(map(tuple, force[first:].tolist()))
     return _Flight(rows, first, drawn.release_time, exit_time, push, truth)

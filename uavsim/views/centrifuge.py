@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from uavsim.plants.centrifuge import CentrifugeSettings
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
 from uavsim.views.launch import levels
@@ -20,10 +21,11 @@ RPM = 30.0 / np.pi  # 1/min for 1 rad/s
 
 def draw(record: Record) -> "Figure | None":
     """The whole run, if it is one."""
-    if record.scenario.plant.kind != "centrifuge" or not record.has("accelerometer"):
+    turning = record.scenario.plant.own
+    if not isinstance(turning, CentrifugeSettings) or not record.has("accelerometer"):
         return None
     rows = ROWS if record.has("truth") else ROWS[:2]
-    figure, axes = sheet(record.title, _words(record), rows)
+    figure, axes = sheet(record.title, _words(record, turning), rows)
     column = [row[0] for row in axes]
     _load(column[0], record)
     _others(column[1], record)
@@ -39,17 +41,17 @@ def draw(record: Record) -> "Figure | None":
     return figure
 
 
-def _words(record: Record) -> str:
-    settings, found = record.scenario.plant.centrifuge, record.scored("launch", "detections")
+def _words(record: Record, settings: CentrifugeSettings) -> str:
+    found = record.scored("launch", "detections")
     words = f"set to {settings.load_g:g} g at {settings.arm:g} m; {record.scenario.detector.kind}: "
     words += "launch recognised" if found else "no launch recognised"
-    held = _held(record)
+    held = _held(record, settings)
     return words if held is None else f"{words}; while held the sensor reads {held:.2f} g in the mean"
 
 
-def _held(record: Record) -> float | None:
+def _held(record: Record, settings: CentrifugeSettings) -> float | None:
     """Mean reading along the arm while the speed is held, g."""
-    settings, release = record.scenario.plant.centrifuge, record.release
+    release = record.release
     if release is None:
         return None
     t, force = record.column("accelerometer", "t"), record.column("accelerometer", "fz")

@@ -29,7 +29,7 @@ def draw(record: Record) -> "Figure | None":
     """Specific force and the detector's windows, or its sum, around the launch."""
     if record.start is None or record.launch is None or not record.has("accelerometer"):
         return None
-    if record.scenario.plant.kind in ("centrifuge", "wind-tunnel"):  # loads that come over seconds, or none
+    if not record.scenario.plant.chosen.launches:
         return None
     kind, origin = if_known(record.scenario.detector), record.start
     windows = record.has("detector") and kind.window is not None

@@ -17,7 +17,9 @@ from uavsim.views.record import Array, Record, Stretch, within
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LIMIT = {"color": RED, "linewidth": 1.0, "linestyle": "--"}
+CURVE: dict[str, Any] = {"color": BLUE, "linewidth": 1.0}
+DOTS: dict[str, Any] = {"marker": ".", "markersize": 3.5}
+LIMIT: dict[str, Any] = {"color": RED, "linewidth": 1.0, "linestyle": "--"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +75,8 @@ def draw_panels(
         )
         x = 1e3 * (t - origin)
         for i, ((name, _), value) in enumerate(zip(panel.curves, values, strict=True)):
-            dots = {} if first else {"marker": ".", "markersize": 3.5}
-            style = LIMIT if i else {"color": BLUE, "linewidth": 1.0, **dots}
+            curve = CURVE | ({} if first else DOTS)
+            style = LIMIT if i else curve
             axes.plot(x, value, label=name, **style)
         if seen.any() and not first:
             axes.plot(x[seen > 0.0], values[0][seen > 0.0], "o", color=RED, markersize=6, label="recognised")

@@ -16,7 +16,6 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.scenario import scenario_of
 from uavsim.views.faults import told
 from uavsim.views.notes import notes
@@ -105,7 +104,7 @@ def print_score(flight: "Flight") -> None:
     _print(console, head, _launch_table(score, scenario), "")
     if score.get("reason"):
         _print(console, words("reason: ", score["reason"]), "")
-    flew = scenario.plant.kind == AIRCRAFT
+    flew = scenario.plant.chosen.flies
     if flew or score["airspeed"]["samples"]:
         phases = ("stroke", "transition", "cruise") if flew else ()
         _print(console, _airspeed_table(score["airspeed"], phases), "", _pressure_table(score["pressure"]), "")
@@ -141,7 +140,7 @@ def _launch_table(score: dict[str, Any], scenario: "Scenario") -> Table:
     table = Table(box=None, show_header=False, pad_edge=False)
     for justify in ("left", "right", "left") * 2:
         table.add_column(justify=justify, no_wrap=True)
-    if scenario.plant.kind != AIRCRAFT:
+    if not scenario.plant.chosen.flies:
         left = tuple(row for row in left if row[1] != "–" or row[0] == "launch detected")
         right = tuple(row for row in right if row[1] != "–")
     for one, other in zip_longest(left, right, fillvalue=("", "", "")):

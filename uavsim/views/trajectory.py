@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from uavsim.plants.rig_settings import AIRCRAFT
 from uavsim.views.curves import COLUMNS, thin
 from uavsim.views.figure import (
     BLACK,
@@ -64,7 +63,7 @@ def draw(record: Record) -> "Figure | None":
 
 def _flew(record: Record) -> bool:
     """Whether there is a way to draw; a flight can diverge before its first row, and a rig has none."""
-    if record.scenario.plant.kind != AIRCRAFT:
+    if not record.scenario.plant.chosen.flies:
         return False
     return bool(np.isfinite(record.flight.truth["altitude"].to_numpy()).sum() > 1)
 

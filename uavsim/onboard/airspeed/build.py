@@ -5,6 +5,7 @@ from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.kinds import KINDS
 from uavsim.onboard.airspeed.paper import PaperFilter
 from uavsim.onboard.airspeed.settings import EstimatorSettings
+from uavsim.onboard.failure import built
 from uavsim.onboard.interface import Estimator, TareWindow
 
 
@@ -33,8 +34,11 @@ def build(settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindo
     if settings.kind not in KINDS:
         raise ValueError(f"estimator {settings.kind!r} is not registered; there are {', '.join(KINDS)}")
     kind = KINDS[settings.kind]
-    made = kind.build(settings, noise, tare_window)
-    if not kind.ours:
-        return GuardedEstimator(kind.name, made, PaperFilter(settings, noise, tare_window))
-    assert isinstance(made, Estimator)
-    return made
+    if kind.ours:
+        made = kind.build(settings, noise, tare_window)
+        assert isinstance(made, Estimator)
+        return made
+    with built(f"estimator {kind.name!r}"):
+        return GuardedEstimator(
+            kind.name, kind.build(settings, noise, tare_window), PaperFilter(settings, noise, tare_window)
+        )

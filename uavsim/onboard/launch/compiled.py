@@ -100,7 +100,11 @@ def _wide(value: float) -> float:
     return np.float64(value)
 
 
-wide = Compiled(_wide, plain=float)
+def _same(value: float) -> float:
+    return value
+
+
+wide = Compiled(_wide, plain=_same)
 """Return a number of a record in double precision."""
 
 

@@ -27,6 +27,8 @@ class GuardedDetector:
 
     def __getattr__(self, name: str) -> Any:
         """Return what it has of the state that is recorded, as a number or None."""
+        if name == "loop":
+            return self._detector.loop  # type: ignore[attr-defined]  # if it has one
         if name not in STATE:
             raise AttributeError(name)
         try:

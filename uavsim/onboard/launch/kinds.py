@@ -159,6 +159,8 @@ class Kind:
         Whether an autopilot flies it: a rival that the default is compared with.
     short : str
         Name in narrow tables.
+    ours : bool
+        Whether it comes with uavsim, and returns whatever it reads.
     """
 
     name: str
@@ -177,6 +179,7 @@ class Kind:
     many_axes: bool = False
     autopilot: bool = False
     short: str = ""
+    ours: bool = False
 
     def second_of(self, settings: "DetectorSettings") -> Second | None:
         """Return the setting that is tuned beside the level."""
@@ -220,7 +223,7 @@ def one_axis(
             values = asdict(getattr(settings, group)) if group else {key: getattr(settings, key) for key in reads}
         return cls(rate, axis=settings.axes[0], **values)
 
-    KINDS.add(Kind(name, cls, build, reads=(group, *reads) if group else reads, **says))
+    KINDS.add(Kind(name, cls, build, reads=(group, *reads) if group else reads, ours=True, **says))
 
 
 def detector(name: str, *, level: str = "", unit: str = "") -> Callable[[C], C]:

@@ -398,5 +398,6 @@ KINDS.add(
         window=lambda settings: Window(settings.levels, settings.ratio),
         many_axes=True,
         short="paper",
+        ours=True,
     )
 )

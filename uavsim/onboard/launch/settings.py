@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from annotated_types import Gt, Interval, MinLen
 
+from uavsim.onboard.failure import built
 from uavsim.onboard.interface import Detector
 from uavsim.onboard.launch.adaptive_cusum import AdaptiveCusumSettings
 from uavsim.onboard.launch.altos import AltOsSettings
@@ -14,6 +15,7 @@ from uavsim.onboard.launch.bounds import Force, Time
 from uavsim.onboard.launch.cusum import CusumSettings
 from uavsim.onboard.launch.detector import Axis, require
 from uavsim.onboard.launch.glr import GlrSettings
+from uavsim.onboard.launch.guarded import GuardedDetector
 from uavsim.onboard.launch.inav import InavSettings
 from uavsim.onboard.launch.kinds import KINDS, OPTIONS, Kind, made
 from uavsim.onboard.launch.paparazzi import PaparazziSettings
@@ -145,7 +147,7 @@ def build(settings: DetectorSettings, rate: Annotated[float, Gt(0.0)]) -> Detect
     Returns
     -------
     Detector
-        Ours abandon windows at gaps above three nominal periods.
+        Ours abandon windows at gaps above three nominal periods; others are guarded (`guarded`).
 
     Raises
     ------
@@ -153,7 +155,11 @@ def build(settings: DetectorSettings, rate: Annotated[float, Gt(0.0)]) -> Detect
         Settings that do not fit together, a kind that is not registered, or a rate that is not above 0.
     """
     require(rate > 0.0, "rate must be above 0 Hz")
-    return kind_of(settings).build(settings, rate)
+    kind = kind_of(settings)
+    if kind.ours:
+        return kind.build(settings, rate)
+    with built(f"detector {kind.name!r}"):
+        return GuardedDetector(kind.name, kind.build(settings, rate))
 
 
 def default(rate: float = 1000.0) -> Detector:

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from sensors import Streams
 from uavsim.onboard.launch import Detector, MultiLevelWindow, SlidingWindow, ThresholdWindow
-from uavsim.plants.launch_curve import shape
-from uavsim.plants.rig_settings import LaunchCurveSettings
+from uavsim.plants.launch_curve import LaunchCurveSettings, shape
 from uavsim.studies import exact
 from uavsim.studies.paper.entry import Entry
 
