@@ -1,25 +1,16 @@
-"""Which plant a scenario chooses, and what each is told before it starts.
+"""Which plant a scenario chooses, and what each of ours is told before it starts.
 
-A new kind is a file of its own, with its settings and its `KIND`, and is named here: where kinds are registered, and
-with the group that its settings stand in.
+A new one is a file, with its settings and its kind, and its group below.
 """
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from uavsim.plants import centrifuge, in_jsbsim, launch_curve, wind_tunnel
 from uavsim.plants.centrifuge import CentrifugeSettings
-from uavsim.plants.kinds import KINDS, Kind, register
+from uavsim.plants.in_jsbsim import NAME
+from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.launch_curve import LaunchCurveSettings
 from uavsim.plants.wind_tunnel import WindTunnelSettings
-
-for _shipped in (
-    in_jsbsim.KIND,
-    launch_curve.KIND,
-    centrifuge.KIND,
-    wind_tunnel.KIND,
-):
-    register(_shipped)
 
 if TYPE_CHECKING:
     KindName = str
@@ -37,7 +28,7 @@ class PlantSettings:
         "jsbsim" flies the aircraft off its catapult; the others are rigs that hold the sensors and the detector.
     """
 
-    kind: KindName = in_jsbsim.KIND.name
+    kind: KindName = NAME
     launch_curve: LaunchCurveSettings = field(default_factory=LaunchCurveSettings)
     centrifuge: CentrifugeSettings = field(default_factory=CentrifugeSettings)
     wind_tunnel: WindTunnelSettings = field(default_factory=WindTunnelSettings)

@@ -1,53 +1,83 @@
-"""The kinds of plant by the names that choose them: each says what it is, so that nobody asks for its name."""
+"""Kinds of plant: where a scenario's truth may come from, and what each says of itself.
+
+A kind is registered where what makes it stands. One of somebody else's has its `Settings` under [plant.options]; ours
+have a group of their own in [plant].
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from uavsim.plants.plant import Plant, Run
+from uavsim.registry import Registry
+
+if TYPE_CHECKING:
+    from uavsim.plants.plant import Plant
+
+C = TypeVar("C", bound="Callable[..., Plant]")
+
+OPTIONS = "options"  # key of [plant] that holds the settings of a kind that is not ours
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Kind:
-    """A kind of plant.
+    """One kind of plant.
 
     Attributes
     ----------
-    name
-        What `plant.kind` calls it.
-    make
-        Makes the plant of one run from its own settings, None if it has none. Raises ValueError, one line that names
-        the key, for what cannot be.
-    group
-        Key of its own settings in `[plant]`, "" if it has none. If they have a `length`, s, the record must hold it
+    name : str
+        By which a scenario names it.
+    cls : callable
+        Makes the plant of one run from its own settings, None if it has none, and the `Run`; ValueError, one line that
+        names the key, for what cannot be.
+    group : str
+        Key of its own settings in [plant], "" if it has none. If they have a `length`, s, the record must hold it
         after the wait.
-    flies
+    options : type, optional
+        Dataclass of [plant.options], if it reads those.
+    flies : bool
         Whether it flies an aircraft, with a rail, a wing and a cruise; else it is a rig and is scored as a whole run.
-    rings
+    rings : bool
         Whether its push makes an airframe ring: vibration grows with it.
-    launches
+    launches : bool
         Whether its load comes as a launch's does, within a fraction of a second.
     """
 
     name: str
-    make: Callable[[Any, Run], Plant]
+    cls: "Callable[..., Plant]"
     group: str = ""
+    options: type | None = None
     flies: bool = False
     rings: bool = False
     launches: bool = True
 
 
-KINDS: dict[str, Kind] = {}
+KINDS: Registry[Kind] = Registry("plant")
+"""Every kind that is registered."""
 
 
-def register(kind: Kind) -> None:
-    """Let scenarios choose a kind.
+def plant(name: str, *, flies: bool = False, rings: bool = False, launches: bool = True) -> Callable[[C], C]:
+    """Register a class or function as a kind of plant.
+
+    It is called with its own ``Settings``, a frozen dataclass, or None if it has none, and the `Run`. A scenario gives
+    them under ``[plant.options]``.
+
+    Parameters
+    ----------
+    name : str
+        By which a scenario names it.
+    flies, rings, launches : bool
+        As of `Kind`.
 
     Raises
     ------
     ValueError
         If the name is taken.
     """
-    if kind.name in KINDS:
-        raise ValueError(f"plant.kind = {kind.name!r} is taken")
-    KINDS[kind.name] = kind
+
+    def register(cls: C) -> C:
+        options: Any = getattr(cls, "Settings", None)
+        group = "" if options is None else OPTIONS
+        KINDS.add(Kind(name, cls, group, options, flies=flies, rings=rings, launches=launches))
+        return cls
+
+    return register
