@@ -301,7 +301,7 @@ def make_plant(scenario: Scenario, draws: Draws) -> Plant:
     ValueError
         An aircraft or property that does not exist; a rig that cannot be.
     """
-    return scenario.plant.chosen.make(scenario.plant.own, plant_settings(scenario, draws))
+    return scenario.plant.chosen.cls(scenario.plant.own, plant_settings(scenario, draws))
 
 
 def fly(

@@ -37,11 +37,11 @@ def test_a_kind_says_what_it_is_and_how_long_it_runs(
 @pytest.mark.parametrize("name", [kind.name for kind in KINDS.values() if not kind.flies])
 def test_a_rig_is_made_from_its_own_settings(name: str) -> None:
     plant = PlantSettings(kind=name)
-    made = plant.chosen.make(plant.own, Run(EnvironmentSettings(), LauncherSettings(), 10.0, release_time=2.0))
+    made = plant.chosen.cls(plant.own, Run(EnvironmentSettings(), LauncherSettings(), 10.0, release_time=2.0))
     assert plant.own is getattr(plant, plant.chosen.group)
     assert made.truth()["t"].tolist() == [0.0]
 
 
 def test_a_name_that_is_taken_is_refused() -> None:
     with pytest.raises(ValueError, match="there is already a plant 'centrifuge'"):
-        KINDS.add(Kind("centrifuge", KINDS["jsbsim"].make))
+        KINDS.add(Kind("centrifuge", KINDS["jsbsim"].cls))

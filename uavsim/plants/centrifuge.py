@@ -18,7 +18,7 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Interval
 
-from uavsim.plants.kinds import Kind
+from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import PrescribedPlant
 from uavsim.truth import STANDARD_GRAVITY
@@ -102,4 +102,4 @@ def centrifuge(settings: CentrifugeSettings, run: Run) -> PrescribedPlant:
     return PrescribedPlant(run, columns)
 
 
-KIND = Kind("centrifuge", centrifuge, group="centrifuge", launches=False)
+KINDS.add(Kind("centrifuge", centrifuge, group="centrifuge", launches=False))

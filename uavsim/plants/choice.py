@@ -1,25 +1,16 @@
-"""Which plant a scenario chooses, and what each is told before it starts.
+"""Which plant a scenario chooses, and what each of ours is told before it starts.
 
-A new kind is a file of its own, with its settings and its `KIND`, and is named here: where kinds are registered, and
-with the group that its settings stand in.
+A new one is a file, with its settings and its kind, and its group below.
 """
 
 from dataclasses import dataclass, field
 from typing import Any
 
-from uavsim.plants import centrifuge, in_jsbsim, launch_curve, wind_tunnel
 from uavsim.plants.centrifuge import CentrifugeSettings
+from uavsim.plants.in_jsbsim import NAME
 from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.launch_curve import LaunchCurveSettings
 from uavsim.plants.wind_tunnel import WindTunnelSettings
-
-for _shipped in (
-    in_jsbsim.KIND,
-    launch_curve.KIND,
-    centrifuge.KIND,
-    wind_tunnel.KIND,
-):
-    KINDS.add(_shipped)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +26,7 @@ class PlantSettings:
         Settings of a plant that is not one of ours, as that has them.
     """
 
-    kind: str = in_jsbsim.KIND.name
+    kind: str = NAME
     launch_curve: LaunchCurveSettings = field(default_factory=LaunchCurveSettings)
     centrifuge: CentrifugeSettings = field(default_factory=CentrifugeSettings)
     wind_tunnel: WindTunnelSettings = field(default_factory=WindTunnelSettings)
@@ -50,7 +41,7 @@ class PlantSettings:
     def own(self) -> Any:
         """Settings of the chosen kind, None if it has none."""
         group = self.chosen.group
-        return getattr(self, group) if group else self.options
+        return getattr(self, group) if group else None
 
     @property
     def length(self) -> float:

@@ -1,51 +1,54 @@
-"""The kinds of plant by the names that choose them: each says what it is, so that nobody asks for its name."""
+"""Kinds of plant: where a scenario's truth may come from, and what each says of itself.
+
+A kind is registered where what makes it stands. One of somebody else's has its `Settings` under [plant.options]; ours
+have a group of their own in [plant].
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from uavsim.plants.plant import Plant, Run
 from uavsim.registry import Registry
 
-C = TypeVar("C", bound=Callable[..., Any])
+if TYPE_CHECKING:
+    from uavsim.plants.plant import Plant
+
+C = TypeVar("C", bound="Callable[..., Plant]")
+
+OPTIONS = "options"  # key of [plant] that holds the settings of a kind that is not ours
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Kind:
-    """A kind of plant.
+    """One kind of plant.
 
     Attributes
     ----------
-    name
-        What `plant.kind` calls it.
-    make
-        Makes the plant of one run from its own settings, None if it has none. Raises ValueError, one line that names
-        the key, for what cannot be.
-    group
-        Key of its own settings in `[plant]`, "" if it has none. If they have a `length`, s, the record must hold it
+    name : str
+        By which a scenario names it.
+    cls : callable
+        Makes the plant of one run from its own settings, None if it has none, and the `Run`; ValueError, one line that
+        names the key, for what cannot be.
+    group : str
+        Key of its own settings in [plant], "" if it has none. If they have a `length`, s, the record must hold it
         after the wait.
-    options
-        Dataclass of its settings in `[plant.options]`, if those are its own.
-    flies
+    options : type, optional
+        Dataclass of [plant.options], if it reads those.
+    flies : bool
         Whether it flies an aircraft, with a rail, a wing and a cruise; else it is a rig and is scored as a whole run.
-    rings
+    rings : bool
         Whether its push makes an airframe ring: vibration grows with it.
-    launches
+    launches : bool
         Whether its load comes as a launch's does, within a fraction of a second.
     """
 
     name: str
-    make: Callable[[Any, Run], Plant]
+    cls: "Callable[..., Plant]"
     group: str = ""
+    options: type | None = None
     flies: bool = False
     rings: bool = False
     launches: bool = True
-    options: type | None = None
-
-    @property
-    def cls(self) -> Callable[[Any, Run], Plant]:
-        """What makes one."""
-        return self.make
 
 
 KINDS: Registry[Kind] = Registry("plant")
@@ -56,12 +59,12 @@ def plant(name: str, *, flies: bool = False, rings: bool = False, launches: bool
     """Register a class or function as a kind of plant.
 
     It is called with its own ``Settings``, a frozen dataclass, or None if it has none, and the `Run`. A scenario gives
-    the settings under ``[plant.options]``.
+    them under ``[plant.options]``.
 
     Parameters
     ----------
     name : str
-        What `plant.kind` calls it.
+        By which a scenario names it.
     flies, rings, launches : bool
         As of `Kind`.
 
@@ -88,4 +91,5 @@ def kind_of(cls: Callable[..., Any], name: str, **says: Any) -> Kind:
     """
     if not callable(cls):
         raise ValueError(f"plant {name!r}: {cls!r} cannot be called")  # noqa: TRY004 (one line for the user)
-    return Kind(name, cls, options=getattr(cls, "Settings", None), **says)
+    options = getattr(cls, "Settings", None)
+    return Kind(name, cls, "" if options is None else OPTIONS, options, **says)

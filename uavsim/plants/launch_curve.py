@@ -24,7 +24,7 @@ import numpy as np
 from annotated_types import Interval
 from numpy.typing import NDArray
 
-from uavsim.plants.kinds import Kind
+from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import PrescribedPlant
 from uavsim.truth import STANDARD_GRAVITY
@@ -115,4 +115,4 @@ def launch_curve(settings: LaunchCurveSettings, run: Run) -> PrescribedPlant:
     return PrescribedPlant(run, columns, noise * (settings.noise_sd_g * STANDARD_GRAVITY))
 
 
-KIND = Kind("launch-curve", launch_curve, group="launch_curve")
+KINDS.add(Kind("launch-curve", launch_curve, group="launch_curve"))

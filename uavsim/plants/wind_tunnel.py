@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from uavsim import airdata
 from uavsim.airdata import GAMMA, GAS_CONSTANT_DRY_AIR
-from uavsim.plants.kinds import Kind
+from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import PrescribedPlant, room
 from uavsim.truth import STANDARD_GRAVITY
@@ -219,4 +219,4 @@ def wind_tunnel(settings: WindTunnelSettings, run: Run) -> PrescribedPlant:
     return PrescribedPlant(run, columns)
 
 
-KIND = Kind("wind-tunnel", wind_tunnel, group="wind_tunnel", launches=False)
+KINDS.add(Kind("wind-tunnel", wind_tunnel, group="wind_tunnel", launches=False))
