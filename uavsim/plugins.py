@@ -109,7 +109,7 @@ def known(what: str) -> list[str]:
 
 def unregistered(what: str, name: str) -> str:
     """Say that nobody has registered a name, which there are, and how to register one."""
-    if name.endswith(".py") or "/" in name:
+    if _is_file(name):
         return f"{shown(name)} names a file, and a scenario runs none; give it to --plugin and name what it registers"
     names = known(what)
     near = nearest(name, names, cutoff=0.4)
@@ -173,17 +173,26 @@ def load(names: Iterable[str]) -> None:
         before = {(what, kind) for what, registry in REGISTRIES.items() for kind in registry}
         already = name in _loaded
         with _blamed(f"--plugin {shown(name)}"):
-            module = _import_file(name) if name.endswith(".py") or "/" in name else _import_module(name)
+            module = _import_file(name) if _is_file(name) else _import_module(name)
         after = {(what, kind) for what, registry in REGISTRIES.items() for kind in registry}
         if after == before and not already and not _registers(module):
             raise PluginError(
                 f"--plugin {shown(name)}: registers no detector, estimator or plant; "
                 "decorate a class with @uavsim.plugins.detector('name')"
             )
-        _loaded.add(name)
+        _loaded[name] = None
 
 
-_loaded: set[str] = set()
+def loaded() -> tuple[str, ...]:
+    """Return what has been imported by `load`, so that another process can do the same; files with their whole path."""
+    return tuple(str(Path(name).expanduser().resolve()) if _is_file(name) else name for name in _loaded)
+
+
+def _is_file(name: str) -> bool:
+    return name.endswith(".py") or "/" in name
+
+
+_loaded: dict[str, None] = {}
 _files: dict[str, tuple[str, str]] = {}  # module: path and SHA-256 of a file that is a plug-in
 
 

@@ -372,8 +372,11 @@ def _with_plugins(s: Scenario) -> Scenario:
         try:
             kind = find(what, name)
         except PluginError as error:
-            flown = "" if was is None else f"; it was flown with {was}"
-            raise SettingError(f"{key} = {error}{flown}", key) from None
+            if was is None:
+                raise SettingError(f"{key} = {error}", key) from None
+            raise SettingError(
+                f"{key} = {name!r} is not registered here; it was flown with {was}; give that to --plugin", key
+            ) from None
         group = getattr(s, what)
         s = replace(s, **{what: replace(group, options=check_options(what, kind.options, group.options))})
         if was is not None and not was.is_(now := source_of(what, kind)):

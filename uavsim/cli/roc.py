@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, finite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, Plugin, finite, folder, plug_in, user_input
 
 if TYPE_CHECKING:
     from uavsim.onboard.launch import DetectorSettings
@@ -29,6 +29,7 @@ def roc(
     scenario: Annotated[str | None, typer.Option(help="Launches and settings of a scenario, flown in JSBSim.")] = None,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Draws launches and disturbances.")] = 1,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
+    plugin: Plugin = None,
     out: Out = None,
     overwrite: Overwrite = False,
     no_plots: NoPlots = False,
@@ -43,13 +44,16 @@ def roc(
     Example: uavsim roc --detectors adaptive-cusum,px4 --hours 200 --trials 2000
 
     Example: uavsim roc --scenario catapult --trials 200
+
+    Example: uavsim roc --plugin mine.py --detectors mine,adaptive-cusum
     """
-    from uavsim.onboard.launch import DetectorSettings
+    from uavsim.onboard.launch import KINDS, DetectorSettings
     from uavsim.studies import operating, reach
     from uavsim.views import operating as view
     from uavsim.views import operating_tables as tables
     from uavsim.views import terminal
 
+    plug_in(plugin)
     kinds = kinds_of(detectors)
     base, launches, name = _launches(scenario, sigma)
     settings = [_of_kind(base, kind) for kind in kinds]
@@ -89,7 +93,7 @@ def roc(
         view.save(found, table, place.folder, plots=not no_plots)
     tables.print_operating(found)
     if table is not None:
-        tables.print_cells(table, DetectorSettings().kind)
+        tables.print_cells(table, DetectorSettings().kind, [kind for kind in kinds if not KINDS[kind].ours])
     terminal.say(f"written to {place.target}")
 
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, finite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, Plugin, finite, folder, plug_in, user_input
 from uavsim.cli.roc import kind_of, load
 from uavsim.files import write_toml
 from uavsim.folders import FilePlace, Place
@@ -21,6 +21,7 @@ def tune(
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Tuned on; the next one scores.")] = 1,
     trials: Annotated[int, typer.Option(min=10, max=20_000, help="Launches; twice as many score.")] = 200,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
+    plugin: Plugin = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder, or file that ends in .toml, to write.")] = None,
     overwrite: Overwrite = False,
 ) -> None:
@@ -37,6 +38,7 @@ def tune(
     from uavsim.views import terminal
     from uavsim.views import tuning as view
 
+    plug_in(plugin)
     kind = None if detector is None else kind_of(detector, "--detector")
     loaded = load(scenario)
     with user_input():
