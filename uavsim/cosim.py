@@ -9,8 +9,11 @@ the flight computer takes it; its commands act from the plant's next step on.
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,9 +23,12 @@ from uavsim import __version__
 from uavsim.beliefs import believed_air, believed_noise, calibrated
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
-from uavsim.onboard.flight_computer import Estimate, FlightComputer
+from uavsim.onboard.failure import OnboardError
+from uavsim.onboard.flight_computer import FlightComputer
+from uavsim.onboard.interface import AirReading, Estimate, Reading
+from uavsim.onboard.launch.guarded import STATE
 from uavsim.plants.plant import Plant, Run
-from uavsim.scenario import PLANT_STEP, Scenario, load_scenario
+from uavsim.scenario import PLANT_STEP, Scenario, load_scenario, with_kinds
 from uavsim.score import Judged, score
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -31,14 +37,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 STEP_RATE = 1.0 / PLANT_STEP  # Hz, 1000 exactly
+FAILED = "onboard_failed"
 CHUNK = 500  # steps between two looks at the progress
 DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recorded
 DETECTOR_TRAIL = 0.1  # s after recognition until which it is
 
-Reading = tuple[float, float, float, float]
-"""t, fx, fy, fz."""
-AirReading = tuple[float, float, float, float, float, float]
-"""t, p_total, p_static, temperature, t_total, t_static."""
 Progress = Callable[[float], None]
 """Called now and then with the share of the flight that is done, 0 … 1."""
 
@@ -76,24 +79,30 @@ def tare_window(scenario: Scenario, release_time: float) -> airspeed.TareWindow 
 
 
 class WatchedDetector:
-    """A launch detector whose state is written down at each step from a given time on."""
+    """A launch detector whose state is written down at each step from a given time on, as far as it tells it."""
 
     def __init__(self, detector: launch.Detector, record_from: float) -> None:
         self.detector = detector
-        self.rows: list[tuple[float, int, int, int, bool, bool]] = []
+        self.rows: list[tuple[Any, ...]] = []
         self._from = record_from
+        told = [name for name in STATE if hasattr(detector, name)]
+        self._state = attrgetter(*STATE) if len(told) == len(STATE) else partial(_told, told)
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
         """Take one reading; see the detector's own."""
         recognised = self.detector.step(t, fx, fy, fz)
         if t >= self._from:
-            d = self.detector
-            self.rows.append((t, d.level, d.count, d.total, d.triggered, recognised))
+            self.rows.append((t, *self._state(self.detector), recognised))
         return recognised
 
     def reset(self) -> None:
         """Forget everything and watch again."""
         self.detector.reset()
+
+
+def _told(names: Sequence[str], detector: launch.Detector) -> list[Any]:
+    """Return the state that a detector tells of, None for the rest."""
+    return [getattr(detector, name) if name in names else None for name in STATE]
 
 
 class Onboard:
@@ -135,6 +144,17 @@ class Onboard:
         estimate = self.computer.air_data(*reading)
         if estimate is not None:
             self.estimates.append(estimate)
+
+    def read(self, readings: Sequence[Reading], air: Sequence[AirReading]) -> None:
+        """Take what both sensors have read, in the order of the stamps."""
+        next_air = 0
+        for row in readings:
+            while next_air < len(air) and air[next_air][0] < row[0]:
+                self.air_data(air[next_air])
+                next_air += 1
+            self.accelerometer(*row)
+        for reading in air[next_air:]:
+            self.air_data(reading)
 
     def detections(self, times: "NDArray[np.float64]") -> list[tuple[Any, ...]]:
         """Return the detector's state from 1 s before release to recognition + 0.1 s, at all samples' `times`, s."""
@@ -194,11 +214,17 @@ class Cosimulation:
         self.readings: list[float] = []  # flat: plain floats cost the collector nothing
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
-        self.ended = ""
+        self.ended = self.reason = ""
         self._begin()
 
     def advance(self, steps: int) -> None:
-        """Fly up to `steps` plant steps; `ended` tells why it stopped early."""
+        """Fly up to `steps` plant steps; `ended` tells why it stopped early, `reason` more of it."""
+        try:
+            self._advance(steps)
+        except OnboardError as failure:
+            self.ended, self.reason = FAILED, str(failure)
+
+    def _advance(self, steps: int) -> None:
         plant, onboard, head = self.plant, self.onboard, self.head
         step, felt, sense, feel = (
             plant.step,
@@ -288,6 +314,9 @@ def fly(
     *,
     seed: int | None = None,
     overrides: Iterable[str] = (),
+    detector: "str | type | None" = None,
+    estimator: "str | type | None" = None,
+    plant: "str | Callable[..., Plant] | None" = None,
     progress: Progress | None = None,
 ) -> Flight:
     """Fly a scenario.
@@ -300,6 +329,9 @@ def fly(
         Instead of the scenario's own.
     overrides
         ``KEY=VALUE`` each; only with a name or path.
+    detector, estimator, plant
+        A registered name, or a class of one's own (`uavsim.plugins`), instead of the scenario's, with its own settings
+        as they are by default. One that is not registered is registered by its class's name.
     progress
         Called now and then with the share that is done.
 
@@ -313,10 +345,11 @@ def fly(
     ValueError
         One line that names file, key and what is allowed.
     """
-    if isinstance(scenario, Scenario):
-        settings = scenario.with_seed(scenario.seed if seed is None else seed)  # validates one that was made by hand
-    else:
+    if not isinstance(scenario, Scenario):
         settings = load_scenario(scenario, overrides=overrides, seed=seed)
+    else:
+        settings = scenario.with_seed(scenario.seed if seed is None else seed)  # validates one that was made by hand
+    settings = with_kinds(settings, detector=detector, estimator=estimator, plant=plant)
     simulation = Cosimulation(settings)
     while not simulation.ended:
         simulation.advance(CHUNK)
@@ -337,16 +370,10 @@ def replay(flight: Flight) -> Flight:
     scenario = Scenario.from_dict(flight.scenario)
     draws = draw(scenario)
     onboard = Onboard(scenario, draws.release_time, draws.calibration)
-    readings = flight.accelerometer.to_numpy().tolist()
+    readings: list[Reading] = [(a, b, c, d) for a, b, c, d in flight.accelerometer.to_numpy().tolist()]
     air: list[AirReading] = [(a, b, c, d, e, f) for a, b, c, d, e, f in flight.air_data.to_numpy().tolist()]
-    next_air = 0
-    for row in readings:
-        while next_air < len(air) and air[next_air][0] < row[0]:
-            onboard.air_data(air[next_air])
-            next_air += 1
-        onboard.accelerometer(*row)
-    for reading in air[next_air:]:
-        onboard.air_data(reading)
+    with suppress(OnboardError):  # which ended the flight, too
+        onboard.read(readings, air)
     tables = dict(flight.tables)
     tables["estimate"] = frame_of_rows("estimate", onboard.estimates)
     tables["detector"] = frame_of_rows("detector", onboard.detections(flight.accelerometer["t"].to_numpy()))
@@ -375,7 +402,8 @@ def _flight(simulation: Cosimulation) -> Flight:
         simulation.ended,
         _versions(),
     )
-    result = score(judged) | ({"reason": plant.failure} if plant.failure else {})
+    reason = simulation.reason or plant.failure
+    result = score(judged) | ({"reason": reason} if reason else {})
     record = frame("truth", {**truth, "phase": judged.phases()})
     return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)
 

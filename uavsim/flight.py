@@ -229,7 +229,10 @@ def frame_of_rows(name: str, rows: list[tuple[Any, ...]]) -> "pd.DataFrame":
     import pandas as pd
 
     table = pd.DataFrame.from_records(rows, columns=list(UNITS[name]))
-    return table if rows else table.astype(float)
+    if not rows:
+        return table.astype(float)
+    told = {column: float for column in table if table[column].dtype == object}  # None is not a number
+    return table.astype(told) if told else table
 
 
 def frame_of_floats(name: str, values: list[float]) -> "pd.DataFrame":

@@ -26,12 +26,14 @@ from uavsim.files import without_none
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.onboard.launch.settings import USES, need, unread
+from uavsim.onboard.launch.kinds import Need
+from uavsim.onboard.launch.settings import kind_of, unread
 from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
 from uavsim.plants.choice import PlantSettings
 from uavsim.plants.hangar import find_aircraft, hangar
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
+from uavsim.plugins import PluginError, Source, check_options, find, of_class, plugged_in, source_of
 from uavsim.score_keys import NUMBERS
 from uavsim.settings import SettingError
 
@@ -39,10 +41,13 @@ if TYPE_CHECKING:
     from uavsim.flight import Flight
 
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
-Outcome = Literal["cruise", "missed_launch", "false_launch", "crashed", "diverged", "timeout", "completed"]
+Outcome = Literal[
+    "cruise", "missed_launch", "false_launch", "crashed", "diverged", "onboard_failed", "timeout", "completed"
+]
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
+OPTIONS = ("detector.options.", "estimator.options.", "plant.options.")  # keys that a plug-in declares
 PLANT_STEP = 1e-3  # s
 MOST_READINGS = 6_000_000  # of one sensor in a flight, which take 1.4 GB and a minute
 NAME = r"(?!.*[\u115f\u1160\u3164\uffa0])[^\W_][\w .+-]{0,99}"  # without the letters of Unicode that have no ink
@@ -127,6 +132,8 @@ class Scenario:
         The outcome that counts as success.
     requirements
         Bounds on figures of the score.
+    plugins
+        Who flies that is not ours; written into a flight's folder, and then only they may fly it.
     """
 
     name: str = "scenario"
@@ -146,6 +153,7 @@ class Scenario:
     mismatch: MismatchSettings = field(default_factory=MismatchSettings)
     flight_computer: FlightComputerSettings = field(default_factory=FlightComputerSettings)
     requirements: tuple[Requirement, ...] = ()
+    plugins: tuple[Source, ...] = ()
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any], where: str = "scenario") -> "Scenario":
@@ -291,14 +299,17 @@ def _apply(values: dict[str, Any], override: str) -> str:
     if not equals or not key:
         raise ValueError(f"--set {shown(override)}: give it as KEY=VALUE")
     free = key.startswith(PROPERTIES)  # what follows is JSBSim's name, which holds slashes and may hold dots
-    if not free and key not in keys():
+    declared = not free and not key.startswith(OPTIONS)
+    if declared and key not in keys():
         raise ValueError(f"--set: {settings.unknown(Scenario, key).problem}")
     *groups, last = [*PROPERTIES.split(".")[:2], key.removeprefix(PROPERTIES)] if free else key.split(".")
     group = values
     for part in groups:
         group = group.setdefault(part, {})
+        if not isinstance(group, dict):
+            raise SettingError(f"--set {shown(override)}: {part} is a value, not a group")
     value = _value(text)
-    is_text = not free and settings.hint_of(Scenario, key) is str
+    is_text = declared and settings.hint_of(Scenario, key) is str
     group[last] = text if is_text and not isinstance(value, str) else value
     return key
 
@@ -323,7 +334,7 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
     SettingError
         On the first thing that is wrong.
     """
-    scenario = _with_inputs(settings.read(Scenario, values), values)
+    scenario = _with_plugins(_with_inputs(settings.read(Scenario, values), values))
     for check in (
         _check_name, _check_properties, _check_times, _check_sensors, _check_cost, _check_vibration,
         _check_directions, _check_faults, _check_detector,
@@ -351,6 +362,50 @@ def _with_inputs(s: Scenario, values: Mapping[str, Any]) -> Scenario:
         except ValueError as error:
             raise SettingError(f"{key}: {error}", key) from None
     return s
+
+
+def _with_plugins(s: Scenario) -> Scenario:
+    """The same with each kind's own options as it declares them, and with who it is, if it is not ours."""
+    named = {"detector": s.detector.kind, "estimator": s.estimator.kind, "plant": s.plant.kind}
+    for what, name in named.items():
+        key, was = f"{what}.kind", next((p for p in s.plugins if (p.group, p.name) == (f"uavsim.{what}s", name)), None)
+        try:
+            kind = find(what, name)
+        except PluginError as error:
+            if was is None:
+                raise SettingError(f"{key} = {error}", key) from None
+            raise SettingError(
+                f"{key} = {name!r} is not registered here; it was flown with {was}; give that to --plugin", key
+            ) from None
+        group = getattr(s, what)
+        s = replace(s, **{what: replace(group, options=check_options(what, kind.options, group.options))})
+        if was is not None and not was.is_(now := source_of(what, kind)):
+            raise SettingError(
+                f"{key}: was flown with {was}, and here is {now}; take [[plugins]] out of its scenario.toml to fly it "
+                "with this one",
+                key,
+                "plugins",
+            )
+    return replace(s, plugins=plugged_in(named))
+
+
+def with_kinds(s: Scenario, **chosen: Any) -> Scenario:
+    """The same scenario with other kinds, by name or class: `detector`, `estimator`, `plant`; None leaves it.
+
+    Raises
+    ------
+    ValueError
+        One line: it is not registered, no such class, or does not suit the scenario.
+    """
+    values = s.to_dict()
+    for what, named in chosen.items():
+        if named is None:
+            continue
+        name = named if isinstance(named, str) else of_class(what, named)
+        own = values[what] if name == values[what]["kind"] else {}
+        kept = {"axes": values[what]["axes"]} if what == "detector" else {}
+        values[what] = {**own, **kept, "kind": name}
+    return Scenario.from_dict(values, s.name) if values != s.to_dict() else s
 
 
 def _airframe(model: str) -> str:
@@ -482,45 +537,52 @@ def _parts(s: Scenario) -> tuple[tuple[str, AccelerometerSettings | PressureSett
 
 def _check_detector(s: Scenario) -> None:
     """Refuse what the detector that was chosen does not read, can never see, or sees only after the stroke."""
-    kind = s.detector.kind
+    kind = kind_of(s.detector)
     for key in unread(s.detector):
         raise SettingError(
-            f"detector.{key}: is not read by kind = '{kind}', which reads {', '.join((*USES[kind], 'axes'))}",
+            f"detector.{key}: is not read by kind = '{kind.name}', which reads {', '.join((*kind.reads, 'axes'))}",
             f"detector.{key}",
             "detector.kind",
         )
-    if kind != "multi-level-window" and (s.detector.axes == "any" or len(s.detector.axes) != 1):
-        raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind}'", "detector.axes")
+    if not kind.many_axes and (s.detector.axes == "any" or len(s.detector.axes) != 1):
+        raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind.name}'", "detector.axes")
+    if kind.need is None:
+        return
     push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
-    key, level, long, time = need(s.detector, push)
-    if key == "trigger" and level < s.detector.threshold:
+    need = kind.need(s.detector, push)
+    if need.level_key == "trigger" and need.level < s.detector.threshold:
         raise SettingError(
-            f"detector.trigger = {level:g}: must be at least the threshold, {s.detector.threshold:g} m/s²",
+            f"detector.trigger = {need.level:g}: must be at least the threshold, {s.detector.threshold:g} m/s²",
             "detector.trigger",
             "detector.threshold",
         )
+    _check_reach(s, need)
+    shortest = math.sqrt(2.0 * s.launcher.stroke / push)  # all of the push from the start, nothing against it
+    if need.time >= shortest:
+        raise SettingError(
+            f"detector.{need.time_key}: takes {1e3 * need.time:.0f} ms, and a stroke of {s.launcher.stroke:g} m at "
+            f"{push:.1f} m/s² lasts no more than {1e3 * shortest:.0f} ms",
+            f"detector.{need.time_key}",
+            "launcher.stroke",
+            "launcher.peak_specific_force_g",
+        )
+
+
+def _check_reach(s: Scenario, need: Need) -> None:
+    """Refuse a level that the accelerometer can never be sure to show."""
     part = s.accelerometer.description()
     own = s.accelerometer.bias if isinstance(s.accelerometer.bias, tuple) else (s.accelerometer.bias,)
     bias = max(min(3.0 * sd, limit) for sd, limit in zip(part.bias_sd, part.bias_limit, strict=True))
     bias += max(abs(b) for b in own)
     scale = min(3.0 * part.scale_sd, part.scale_limit)
     reach = part.range * (1.0 - scale) - bias - STANDARD_GRAVITY
-    if level >= reach:
+    if need.level >= reach:
         raise SettingError(
-            f"detector.{key} = {level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be sure to show it; "
-            f"less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the limit is "
-            f"{reach:.1f} m/s²",
-            f"detector.{key}",
+            f"detector.{need.level_key} = {need.level:g} m/s²: {part.name} at ±{part.range_g:g} g can never be "
+            f"sure to show it; less 1 g of gravity, {bias:.2f} m/s² of bias and {100 * scale:.1f} % of scale error the "
+            f"limit is {reach:.1f} m/s²",
+            f"detector.{need.level_key}",
             "accelerometer",
-        )
-    shortest = math.sqrt(2.0 * s.launcher.stroke / push)  # all of the push from the start, nothing against it
-    if time >= shortest:
-        raise SettingError(
-            f"detector.{long}: takes {1e3 * time:.0f} ms, and a stroke of {s.launcher.stroke:g} m at {push:.1f} m/s² "
-            f"lasts no more than {1e3 * shortest:.0f} ms",
-            f"detector.{long}",
-            "launcher.stroke",
-            "launcher.peak_specific_force_g",
         )
 
 

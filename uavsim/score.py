@@ -19,7 +19,7 @@ speed that the noise hides, an error over its claim says nothing: there V < 2 σ
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.consistency import LAGS, LEAST, ljung_box
+from uavsim.files import without_none
 from uavsim.score_keys import PHASES, PRESSURE, PRESSURES
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -66,7 +67,7 @@ class Judged:
     release_time
         When the latch let go, s.
     ended
-        Why the loop stopped: 'completed', 'crashed' or 'diverged'.
+        Why the loop stopped: 'completed', 'crashed', 'diverged' or 'onboard_failed'.
     versions
         Of what was flown with.
     """
@@ -194,6 +195,7 @@ def _score(flight: Judged) -> dict[str, Any]:
         "outcome": outcome(flight),
         "expected": flight.scenario.expect,
         "seed": flight.scenario.seed,
+        "plugins": [without_none(asdict(source)) for source in flight.scenario.plugins],
         "versions": dict(flight.versions),
         "launch": launch,
         "airspeed": airspeed,
@@ -206,10 +208,10 @@ def _score(flight: Judged) -> dict[str, Any]:
 
 
 def outcome(flight: Judged) -> str:
-    """Name the first that applies: diverged, completed, false_launch, missed_launch, crashed, timeout, cruise."""
+    """Name the first that applies, in the order of `docs/score.md`."""
     wings, exit_time, detected = flight.event_time("wings_commanded"), flight.rail_exit_time, flight.detected_time
-    if flight.ended == "diverged":
-        return "diverged"
+    if flight.ended in ("diverged", "onboard_failed"):
+        return flight.ended
     if flight.is_rig:
         return "completed"
     if wings is not None and (exit_time is None or wings < exit_time):
@@ -265,7 +267,7 @@ def _airspeed(flight: Judged) -> dict[str, Any]:
         name: {**_figures(error[rows], raw[rows], sd[rows], valid[rows], visible[rows]), **_innovations(nis[rows])}
         for name, rows in figures.items()
     }
-    return {**result.pop(""), **result}
+    return {"estimator": flight.scenario.estimator.kind, **result.pop(""), **result}
 
 
 def _figures(error: Array, raw: Array, sd: Array, valid: Array, visible: NDArray[np.bool_]) -> dict[str, Any]:

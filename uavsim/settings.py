@@ -274,7 +274,11 @@ def _allowed(hint: Any) -> str:
         return _listed([_allowed(member) for member in members if member is not type(None)])
     if origin is tuple:
         return _allowed_list(members)
-    return "a group of NAME = number" if origin is dict else _WORDS[hint]
+    return _WORDS[hint] if origin is None else _allowed_group(members)
+
+
+def _allowed_group(members: tuple[Any, ...]) -> str:
+    return "a group of keys" if members[1] is Any else "a group of NAME = number"
 
 
 def _allowed_list(members: tuple[Any, ...]) -> str:

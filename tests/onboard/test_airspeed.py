@@ -517,7 +517,7 @@ def test_settings_validate():
     assert adapter.validate_python({}) == EstimatorSettings()
     read = adapter.validate_python({"kind": "paper-filterpy", "model": "bernoulli", "q_total": 875.5})
     assert (read.model, read.q_total) == ("bernoulli", 875.5)
-    for wrong in ({"kind": "best"}, {"model": "newton"}, {"q_total": 0.0}, {"wind_sd": -1.0}, {"calibration": 0.0}):
+    for wrong in ({"model": "newton"}, {"q_total": 0.0}, {"wind_sd": -1.0}, {"calibration": 0.0}):
         with pytest.raises(pydantic.ValidationError):
             adapter.validate_python(wrong)
     with pytest.raises(pydantic.ValidationError):

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from uavsim import airdata
-from uavsim.onboard.flight_computer import LONGEST_STEP, Estimate, FlightComputer, FlightComputerSettings
+from uavsim.onboard.flight_computer import LONGEST_STEP, FlightComputer, FlightComputerSettings
+from uavsim.onboard.interface import Estimate, Estimator
 from uavsim.onboard.launch import MultiLevelWindow
 
 G = 9.80665  # m/s^2
@@ -39,7 +40,7 @@ class Spotter:
         self.resets += 1
 
 
-class Oracle:
+class Oracle(Estimator):
     """Gives back the estimate that stands in `next`, whatever it reads."""
 
     def __init__(self) -> None:
@@ -49,7 +50,7 @@ class Oracle:
     def step(self, *reading: float) -> Estimate | None:
         return self.next
 
-    aided = False
+    aided = False  # type: ignore[assignment]
 
     def accelerometer(self, *reading: float) -> None:
         raise AssertionError("an estimator that wants no specific force is given one")

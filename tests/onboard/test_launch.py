@@ -11,7 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uavsim.onboard import launch
-from uavsim.onboard.launch import DetectorSettings, MultiLevelWindow, cusum, glr, hold, nested, window
+from uavsim.onboard.launch import (
+    DetectorSettings,
+    MultiLevelWindow,
+    cusum,
+    glr,
+    hold,
+    nested,
+    sequence_window,
+    sliding_window,
+)
 from uavsim.onboard.launch import settings as launch_settings
 
 ALL_AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -19,7 +28,7 @@ NAN = math.nan
 
 
 def test_examples():
-    for module in (nested, window, hold, cusum, glr, launch_settings):
+    for module in (nested, sliding_window, sequence_window, hold, cusum, glr, launch_settings):
         results = doctest.testmod(module)
         assert results.attempted > 0 == results.failed
 

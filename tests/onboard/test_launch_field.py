@@ -6,13 +6,12 @@ import pytest
 
 import uavsim
 from uavsim.onboard.launch import DetectorSettings, Inav, Px4, build
-from uavsim.onboard.launch.field import lowpass
-from uavsim.onboard.launch.settings import FIELD
+from uavsim.onboard.launch.inav import lowpass
 
 NAN = math.nan
 G = 9.80665  # m/s², ISO 80000-3
 REST = 1200  # samples on the rail at 1 kHz: more than the two blocks that the mean needs
-KINDS = tuple(FIELD)
+KINDS = ("px4", "px4-norm", "ardupilot", "inav", "paparazzi", "altos")
 
 
 def make(kind):

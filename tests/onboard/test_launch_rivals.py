@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import uavsim
+from uavsim.onboard import launch
 from uavsim.onboard.launch import (
     Cusum,
     DetectorSettings,
@@ -18,12 +19,12 @@ from uavsim.onboard.launch import (
     ThresholdWindow,
     build,
 )
-from uavsim.onboard.launch.settings import FIELD, ONE_AXIS
 from uavsim.scenario import load_scenario
 
 NAN = math.nan
 G = 9.80665  # m/s², ISO 80000-3
-KINDS = tuple(kind for kind in ONE_AXIS if kind not in FIELD)
+FIELD = ("px4", "px4-norm", "ardupilot", "inav", "paparazzi", "altos")
+KINDS = tuple(k for k in launch.KINDS if k not in FIELD and k != "multi-level-window")
 
 
 def recognised(detector, force, period=0.001):
@@ -336,7 +337,7 @@ def test_a_force_beyond_every_accelerometer_is_none(detector, force):
 
 def build_like(detector):
     """A new one of the same kind."""
-    kind = next(kind for kind, made in ONE_AXIS.items() if made is type(detector))
+    kind = next(kind.name for kind in launch.KINDS.values() if kind.cls is type(detector))
     return build(DetectorSettings(kind=kind), 1000.0)
 
 

@@ -11,13 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
+from uavsim.onboard.launch import KINDS as REGISTERED
 from uavsim.onboard.launch import DetectorSettings, MultiLevelWindow, build
 from uavsim.onboard.launch.detector import periods
-from uavsim.onboard.launch.settings import FIELD, ONE_AXIS, USES
 
 NAN = math.nan
 RATE = 1000.0  # Hz
-KINDS = ("multi-level-window", *ONE_AXIS)
+KINDS = tuple(REGISTERED)
+FIELD = ("px4", "px4-norm", "ardupilot", "inav", "paparazzi", "altos")
 WINDOWS = ("multi-level-window", "threshold-window", "sliding-window", "sequence-window", "glr-bank")
 HOLDS = ("single-threshold", "double-threshold")
 ALL_AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -187,8 +188,8 @@ def test_late_and_nan_samples_do_not_speak_for_a_launch(kind):
 @pytest.mark.parametrize("kind", FIELD)
 def test_a_rule_of_the_field_has_one_default(kind):
     """The class, the keys of its group and what is built are the same."""
-    group = asdict(getattr(DetectorSettings(), USES[kind][0]))
-    parameters = inspect.signature(ONE_AXIS[kind].__init__).parameters
+    group = asdict(getattr(DetectorSettings(), REGISTERED[kind].reads[0]))
+    parameters = inspect.signature(REGISTERED[kind].cls.__init__).parameters
     assert group == {key: parameters[key].default for key in group}
     assert {*parameters} == {"self", "rate", "axis", *group}
 
@@ -210,10 +211,10 @@ def test_a_rule_of_the_field_has_one_default(kind):
 )
 def test_keys_of_a_rule_reach_it(kind, key, value):
     """It decides as the class does with that argument, and not as it does without, on 60 m/s² beyond 2 at rest."""
-    changed = TypeAdapter(DetectorSettings).validate_python({"kind": kind, USES[kind][0]: {key: value}})
+    changed = TypeAdapter(DetectorSettings).validate_python({"kind": kind, REGISTERED[kind].reads[0]: {key: value}})
     record = [(k / RATE, 62.0 if k >= 1200 else 2.0, 0.3, -9.6) for k in range(1600)]
     built, bare, usual = (
         decisions(detector, record)[:1]
-        for detector in (build(changed, RATE), ONE_AXIS[kind](RATE, **{key: value}), make(kind))
+        for detector in (build(changed, RATE), REGISTERED[kind].cls(RATE, **{key: value}), make(kind))
     )
     assert built == bare != usual != []

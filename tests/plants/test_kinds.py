@@ -4,7 +4,7 @@ import pytest
 
 from uavsim.plants.centrifuge import CentrifugeSettings
 from uavsim.plants.choice import PlantSettings
-from uavsim.plants.kinds import KINDS
+from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.launch_curve import LaunchCurveSettings
 from uavsim.plants.plant import Run
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
@@ -40,3 +40,8 @@ def test_a_rig_is_made_from_its_own_settings(name: str) -> None:
     made = plant.chosen.cls(plant.own, Run(EnvironmentSettings(), LauncherSettings(), 10.0, release_time=2.0))
     assert plant.own is getattr(plant, plant.chosen.group)
     assert made.truth()["t"].tolist() == [0.0]
+
+
+def test_a_name_that_is_taken_is_refused() -> None:
+    with pytest.raises(ValueError, match="there is already a plant 'centrifuge'"):
+        KINDS.add(Kind("centrifuge", KINDS["jsbsim"].cls))

@@ -16,10 +16,11 @@ import numba
 import pandas as pd
 import pytest
 
-from uavsim.studies import machine_code, reach
-from uavsim.studies.compiled import JIT, compiled
+from uavsim.onboard.launch import KINDS, DetectorSettings, machine_code
+from uavsim.onboard.launch.compiled import compiled, jit
+from uavsim.studies import reach
 
-pytestmark = pytest.mark.skipif(not JIT, reason="NUMBA_DISABLE_JIT is set")
+pytestmark = pytest.mark.skipif(not jit(), reason="NUMBA_DISABLE_JIT is set")
 
 ROOT = os.geteuid() == 0 if hasattr(os, "geteuid") else False
 NOBODY = 65534  # user id of nobody, who is not us
@@ -44,7 +45,7 @@ class Kept:
         spec.loader.exec_module(module)
         made: Any = compiled(module.double)
         assert made(21) == 42
-        return sum(made.stats.cache_hits.values())
+        return sum(made.code.stats.cache_hits.values())
 
     def files(self) -> list[Path]:
         return sorted(path for path in self.folder.iterdir() if path.suffix in {".nbi", ".nbc"})
@@ -277,11 +278,11 @@ def test_roc_ends_without_the_jit_for_rules_that_look_at_every_sample(tmp_path: 
 # -- what is left out without a JIT ----------------------------------------------------------------------------------
 
 
-def test_with_the_jit_nothing_is_left_out() -> None:
+def test_with_loops_nothing_is_left_out() -> None:
     asked = reach.Work(1e5, 10_000_000, 1_000_000)
-    assert reach.within_reach(asked, detectors=160, compared=450, rate=1000.0, jit=True) == asked
-    assert reach.told(asked, asked) == ""
-    assert reach.tuning_told(70.0, 1000.0, jit=True) == ""
+    assert reach.plain([DetectorSettings(kind=kind) for kind in KINDS], 1000.0) == []
+    assert reach.within_reach(asked, detectors=0, compared=0, rate=1000.0) == asked
+    assert reach.told(asked, asked, "") == ""
 
 
 @pytest.mark.parametrize("detectors", [1, 11, 161])
@@ -289,7 +290,7 @@ def test_with_the_jit_nothing_is_left_out() -> None:
 def test_without_it_the_work_is_bounded_and_told(detectors: int, rate: float) -> None:
     """Samples times detectors stay within the bound, or are the least that can be counted: a piece of each class."""
     asked = reach.Work(1e5, 10_000_000, 1_000_000)
-    done = reach.within_reach(asked, detectors=detectors, compared=30 * detectors, rate=rate, jit=False)
+    done = reach.within_reach(asked, detectors=detectors, compared=30 * detectors, rate=rate)
     hours = done.hours * (1.0 + 3.0 * 0.25)
     least = 4 * reach.PIECE * rate * detectors
     assert hours * 3600.0 * rate * detectors <= max(reach.MOST, least)
@@ -297,7 +298,7 @@ def test_without_it_the_work_is_bounded_and_told(detectors: int, rate: float) ->
     assert done.cells * reach.LAUNCH * rate * 30 * detectors <= max(
         reach.MOST_TRIED, reach.LAUNCH * rate * 30 * detectors
     )
-    said = reach.told(asked, done)
+    said = reach.told(asked, done, reach.OFF)
     assert said.startswith("numba's JIT is off (NUMBA_DISABLE_JIT): so that it ends in about ten minutes, ")
     assert "h of the mix instead of 100000" in said
     assert f"{done.trials} launches instead of 10000000" in said
@@ -305,7 +306,7 @@ def test_without_it_the_work_is_bounded_and_told(detectors: int, rate: float) ->
 
 def test_without_it_little_work_is_done_as_asked() -> None:
     asked = reach.Work(0.05, 20, 0)
-    assert reach.within_reach(asked, detectors=22, compared=60, rate=1000.0, jit=False) == asked
+    assert reach.within_reach(asked, detectors=22, compared=60, rate=1000.0) == asked
 
 
 def test_a_budget_that_takes_too_long_without_the_jit_is_one_line() -> None:
@@ -316,4 +317,4 @@ def test_a_budget_that_takes_too_long_without_the_jit_is_one_line() -> None:
     assert run.returncode == 2
     assert run.stderr.count("\n") == 1
     assert "at most 100 h are run where numba's JIT is off; 0.0671 an hour can be shown" in run.stderr
-    assert reach.tuning_told(72.0, 1000.0, jit=False).startswith(f"{reach.OFF}: this takes about 69 min")
+    assert reach.tuning_told(72.0, 1000.0, reach.OFF).startswith(f"{reach.OFF}: this takes about 69 min")

@@ -4,7 +4,6 @@ The authority is `step` itself at the times k / rate; there is no tolerance.
 """
 
 from dataclasses import replace
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -12,12 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch import DetectorSettings, Kind, build
-from uavsim.onboard.launch.settings import USES
-from uavsim.studies.detections import MAKERS, BatchDetector
+from uavsim.onboard.launch import KINDS, DetectorSettings, build
+from uavsim.studies.detections import BatchDetector, has_loop
 
 Array = NDArray[np.float64]
-KINDS = get_args(Kind)
 RATES = (50.0, 833.0, 1000.0, 4000.0)  # Hz
 
 
@@ -52,10 +49,10 @@ def rough(rate: float, n: int, seed: int) -> Array:
     return force
 
 
-def variants(kind: Kind) -> list[DetectorSettings]:
+def variants(kind: str) -> list[DetectorSettings]:
     """Settings as shipped, and others that a kind reads."""
     plain = DetectorSettings(kind=kind)
-    group = USES[kind][0]
+    group = KINDS[kind].reads[0]
     if hasattr(getattr(plain, group), "acceleration"):
         own = getattr(plain, group)
         return [
@@ -74,9 +71,9 @@ def variants(kind: Kind) -> list[DetectorSettings]:
         return [plain, replace(plain, glr=short, axes=("+z",)), replace(plain, glr=replace(plain.glr, reference=20.0))]
     low = replace(plain, threshold=25.0, window=0.007, ratio=0.6, axes=("-y",))
     found = [plain, low]
-    if "trigger" in USES[kind]:
+    if "trigger" in KINDS[kind].reads:
         found.append(replace(low, trigger=50.0))
-    if "rearm" in USES[kind]:
+    if "rearm" in KINDS[kind].reads:
         found.append(replace(low, rearm=False))
     if kind == "multi-level-window":
         found += [replace(low, axes="any"), replace(low, axes=("+x", "-y", "+z"), levels=2)]
@@ -85,14 +82,14 @@ def variants(kind: Kind) -> list[DetectorSettings]:
 
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize("kind", KINDS)
-def test_alarms_are_those_of_step(kind: Kind, rate: float) -> None:
+def test_alarms_are_those_of_step(kind: str, rate: float) -> None:
     force = rough(rate, 6000, seed=int(rate))
     for chosen in variants(kind):
         assert BatchDetector(chosen, rate).alarms(force).tolist() == by_step(chosen, rate, force)
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_kind_raises_alarms_here(kind: Kind) -> None:
+def test_every_kind_raises_alarms_here(kind: str) -> None:
     """Or the comparison above would say nothing."""
     force = rough(1000.0, 6000, seed=1000)
     assert any(BatchDetector(chosen, 1000.0).alarms(force).size > 1 for chosen in variants(kind))
@@ -100,7 +97,7 @@ def test_every_kind_raises_alarms_here(kind: Kind) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("single", [False, True])
-def test_blocks_change_nothing(kind: Kind, single: bool) -> None:
+def test_blocks_change_nothing(kind: str, single: bool) -> None:
     force = rough(1000.0, 5000, seed=2)
     if single:
         force = force.astype(np.float32).astype(np.float64)
@@ -112,7 +109,7 @@ def test_blocks_change_nothing(kind: Kind, single: bool) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_first_alarm_of_each_record_is_that_of_step(kind: Kind) -> None:
+def test_the_first_alarm_of_each_record_is_that_of_step(kind: str) -> None:
     trials = np.stack([rough(1000.0, 2500, seed) for seed in range(3)])
     trials[1] = 0.0
     for chosen in variants(kind):
@@ -134,7 +131,7 @@ def test_the_first_alarm_of_each_record_is_that_of_step(kind: Kind) -> None:
     levels=st.integers(1, 5),
 )
 def test_any_settings_agree(
-    kind: Kind, rate: float, seed: int, threshold: float, over: float, window: float, ratio: float, levels: int
+    kind: str, rate: float, seed: int, threshold: float, over: float, window: float, ratio: float, levels: int
 ) -> None:
     chosen = DetectorSettings(
         kind=kind,
@@ -179,12 +176,12 @@ def test_one_axis_is_not_enough_for_three() -> None:
 
 
 def test_every_kind_has_a_kernel() -> None:
-    assert {type(build(DetectorSettings(kind=kind), 1000.0)) for kind in KINDS} == set(MAKERS)
+    assert all(has_loop(DetectorSettings(kind=kind), 1000.0) for kind in KINDS)
 
 
 def test_without_a_place_for_machine_code_it_is_compiled_all_the_same() -> None:
     """A function without a file has none, as one in an installation that nobody may write to."""
-    from uavsim.studies.kernels import compiled
+    from uavsim.onboard.launch.compiled import compiled
 
     names: dict[str, object] = {}
     exec("def double(x):\n    return 2 * x", names)

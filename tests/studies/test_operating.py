@@ -5,12 +5,12 @@ import pandas as pd
 import pytest
 from pandas.testing import assert_frame_equal
 
-from uavsim.onboard.launch import DetectorSettings, build
+from uavsim.onboard.launch import KINDS, DetectorSettings, build
 from uavsim.scenario import load_scenario
 from uavsim.settings import SettingError
 from uavsim.studies.false_alarms import DISTURBANCES, count
 from uavsim.studies.intervals import rate_interval, share_interval
-from uavsim.studies.operating import KINDS, at_level, compare, get, level, levels, not_better, operate
+from uavsim.studies.operating import at_level, compare, get, level, levels, not_better, operate
 from uavsim.studies.signals import CROSSING, LaunchSettings, LaunchTruth
 from uavsim.studies.trials import GRACE, Drawn, Flown, Trials, judge
 from uavsim.studies.workers import spread

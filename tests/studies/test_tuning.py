@@ -5,11 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from uavsim.onboard.launch import DetectorSettings
+from uavsim.onboard.launch import KINDS, DetectorSettings
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.studies.false_alarms import count
-from uavsim.studies.operating import KINDS
-from uavsim.studies.tuning import MARGIN, SECOND, Tuned, hours_for, own_keys, plain, tune
+from uavsim.studies.tuning import MARGIN, Tuned, hours_for, own_keys, plain, tune
 from uavsim.views.tuning import lines, summary
 
 BUDGET = 5.0  # false alarms an hour
@@ -59,11 +58,12 @@ def test_the_lines_are_a_scenario(weak: Tuned) -> None:
 def test_every_kind_has_plain_lines_that_it_reads(kind: str) -> None:
     """Keys of another kind are left behind: a scenario refuses those that are not read."""
     loaded = replace(DetectorSettings(), threshold=30.0, ratio=0.7)
-    own = own_keys(loaded, kind)  # type: ignore[arg-type]
+    own = own_keys(loaded, kind)
     values = {"detector": plain(own), "launcher": {"peak_specific_force_g": 8.0}}
     if kind != "paparazzi":  # its rule takes longer than the stroke
         assert Scenario.from_dict(values).detector == own
-    assert set(SECOND) <= set(KINDS)
+    assert KINDS[kind].level is not None
+    assert KINDS[kind].second_of(own) is not None
 
 
 @pytest.mark.parametrize("budget", [0.0, -1.0, float("nan"), float("inf")])

@@ -12,6 +12,7 @@ from uavsim.cli.bench import bench
 from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, Interrupted, WrongInputError, told
 from uavsim.cli.fly import fly
 from uavsim.cli.paper import paper
+from uavsim.cli.plugins import plugins
 from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
@@ -21,7 +22,7 @@ from uavsim.cli.tune import tune
 from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
-COMMANDS = (scenarios, fly, replay, sensors, roc, tune, survey, paper, bench)
+COMMANDS = (scenarios, fly, replay, sensors, roc, tune, survey, paper, plugins, bench)
 """In the order of the help."""
 
 
@@ -64,6 +65,7 @@ def uavsim(
       uavsim tune catapult --false-alarms 0.1
       uavsim survey fw8
       uavsim paper
+      uavsim plugins
       uavsim bench
     """  # noqa: D301 (click reads \b: keep these lines)
     if version:

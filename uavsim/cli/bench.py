@@ -4,11 +4,16 @@ from typing import Annotated
 
 import typer
 
-from uavsim.cli.common import Bar, user_input
+from uavsim.cli.common import Bar, Plugin, plug_in, user_input
 
 
 def bench(
     scenario: Annotated[str, typer.Argument(help="A packaged name or a TOML file.")] = "catapult",
+    *,
+    settings: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the scenario.")
+    ] = None,
+    plugin: Plugin = None,
 ) -> None:
     """Measure what a step in the loop costs, over bare JSBSim.
 
@@ -16,13 +21,20 @@ def bench(
     it: what detector and airspeed estimator cost by themselves, which is what would run on the aircraft.
 
     Example: uavsim bench
+
+    Example: uavsim bench catapult --plugin mine.py --set detector.kind=mine
     """
+    from uavsim.onboard.failure import OnboardError
     from uavsim.scenario import load_scenario
     from uavsim.studies.cost import measure, measure_onboard
     from uavsim.views import terminal
 
+    plug_in(plugin)
     with user_input(), Bar("measuring") as bar:
-        loaded = load_scenario(scenario)
-        cost = measure(loaded, progress=bar.show)
-        onboard = measure_onboard(loaded)
+        loaded = load_scenario(scenario, overrides=settings or ())
+        try:
+            cost = measure(loaded, progress=bar.show)
+            onboard = measure_onboard(loaded)
+        except OnboardError as failure:
+            raise ValueError(failure) from None
     terminal.print_cost(cost, onboard)

@@ -29,6 +29,10 @@ LARGEST_SEED = 2**63 - 1
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder to write; made with its parents.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what --out holds of ours.")]
+Plugin = Annotated[
+    list[str] | None,
+    typer.Option("--plugin", metavar="FILE.py|MODULE", help="Detectors, estimators, plants of one's own; may repeat."),
+]
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw no plots.")]
 
 
@@ -60,6 +64,15 @@ def user_input(where: str = "") -> Iterator[None]:
         yield
     except ValueError as error:
         raise WrongInputError(f"{where}{error}") from error
+
+
+def plug_in(names: list[str] | None) -> None:
+    """Import what `--plugin` names."""
+    if names:
+        from uavsim.plugins import load
+
+        with user_input():
+            load(names)
 
 
 @contextmanager

@@ -16,11 +16,13 @@ from uavsim.cli.common import (
     NoPlots,
     Out,
     Overwrite,
+    Plugin,
     WrongInputError,
     as_expected,
     folder,
     leave,
     plotter,
+    plug_in,
     user_input,
 )
 from uavsim.folders import Place
@@ -47,6 +49,7 @@ def fly(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the scenario.")
     ] = None,
+    plugin: Plugin = None,
     no_plots: NoPlots = False,
     overwrite: Overwrite = False,
 ) -> None:
@@ -55,9 +58,12 @@ def fly(
     Example: uavsim fly catapult --seed 7 --set accelerometer.preset=adxl345
 
     Example: uavsim fly gusty --seeds 1-50 --out output/gusty-50
+
+    Example: uavsim fly catapult --plugin mine.py --set detector.kind=mine --set detector.options.level=30
     """
     from uavsim.scenario import load_scenario
 
+    plug_in(plugin)
     if seed is not None and seeds is not None:
         raise typer.BadParameter("give --seed or --seeds, not both")
     numbers = [] if seeds is None else seeds_of(seeds)

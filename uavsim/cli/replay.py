@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from uavsim.cli.common import NoPlots, Out, Overwrite, folder, plotter, user_input
+from uavsim.cli.common import NoPlots, Out, Overwrite, Plugin, folder, plotter, plug_in, user_input
 
 
 def replay(
@@ -19,6 +19,7 @@ def replay(
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of the detector.")
     ] = None,
     out: Out = None,
+    plugin: Plugin = None,
     no_plots: NoPlots = False,
     overwrite: Overwrite = False,
 ) -> None:
@@ -31,6 +32,7 @@ def replay(
 
     Example: uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az --set detector.kind=inav
     """
+    plug_in(plugin)
     if len(logs) == 1 and _is_flight(logs[0]):
         if mapping is not None or settings:
             option = "--map" if mapping is not None else "--set"

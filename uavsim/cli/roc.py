@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, finite, folder, user_input
+from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, Plugin, finite, folder, plug_in, user_input
 
 if TYPE_CHECKING:
     from uavsim.onboard.launch import DetectorSettings
@@ -29,6 +29,7 @@ def roc(
     scenario: Annotated[str | None, typer.Option(help="Launches and settings of a scenario, flown in JSBSim.")] = None,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Draws launches and disturbances.")] = 1,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
+    plugin: Plugin = None,
     out: Out = None,
     overwrite: Overwrite = False,
     no_plots: NoPlots = False,
@@ -43,27 +44,31 @@ def roc(
     Example: uavsim roc --detectors adaptive-cusum,px4 --hours 200 --trials 2000
 
     Example: uavsim roc --scenario catapult --trials 200
+
+    Example: uavsim roc --plugin mine.py --detectors mine,adaptive-cusum
     """
-    from uavsim.onboard.launch import DetectorSettings
+    from uavsim.onboard.launch import KINDS, DetectorSettings
     from uavsim.studies import operating, reach
     from uavsim.views import operating as view
     from uavsim.views import operating_tables as tables
     from uavsim.views import terminal
 
+    plug_in(plugin)
     kinds = kinds_of(detectors)
     base, launches, name = _launches(scenario, sigma)
-    settings = [replace(base, kind=kind) for kind in kinds]  # type: ignore[arg-type]
-
-    compared = _with_default(settings, base)
+    settings = [_of_kind(base, kind) for kind in kinds]
+    with user_input():
+        compared = _with_default(settings, base)
+        plain = reach.plain(settings, launches.rate)
     asked = reach.Work(hours, trials, cells)
     work = reach.within_reach(
         asked,
-        detectors=sum(1 for one in settings for _ in operating.levels(one)),
-        compared=len(compared) * len(operating.CELLS),
+        detectors=sum(1 for one in plain for _ in operating.levels(one)),
+        compared=len(plain) * len(operating.CELLS),
         rate=launches.rate,
     )
     with folder(out, f"roc-{seed}", overwrite=overwrite) as place:  # before anything is computed in vain
-        if left_out := reach.told(asked, work):
+        if left_out := reach.told(asked, work, reach.why(plain)):
             terminal.say(left_out)
         with Bar("trying launch detectors") as bar, user_input():
             found = operating.operate(
@@ -88,26 +93,36 @@ def roc(
         view.save(found, table, place.folder, plots=not no_plots)
     tables.print_operating(found)
     if table is not None:
-        tables.print_cells(table, DetectorSettings().kind)
+        tables.print_cells(table, DetectorSettings().kind, [kind for kind in kinds if not KINDS[kind].ours])
     terminal.say(f"written to {place.target}")
 
 
+def _of_kind(base: "DetectorSettings", kind: str) -> "DetectorSettings":
+    """The same settings for another kind; options are those of the kind that they were given for."""
+    return replace(base, kind=kind, options=base.options if kind == base.kind else None)
+
+
 def kinds_of(text: str | None) -> list[str]:
-    """Kinds of detector from `A,B`; all of them without it."""
-    from sensors.choice import nearest, shown
-    from uavsim.studies.operating import KINDS
+    """Kinds of detector from `A,B`; all that are registered without it."""
+    from uavsim.onboard.launch import KINDS
 
     if text is None:
         return list(KINDS)
-    kinds = [part.strip() for part in text.split(",")]
-    for kind in kinds:
-        if kind not in KINDS:
-            near = nearest(kind, KINDS, cutoff=0.4)
-            hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
-            raise typer.BadParameter(f"unknown detector {shown(kind)}; {hint}", param_hint="--detectors")
+    kinds = [kind_of(part.strip(), "--detectors") for part in text.split(",")]
     if len(set(kinds)) != len(kinds):
         raise typer.BadParameter(f"{text[:60]!r} names a detector twice", param_hint="--detectors")
     return kinds
+
+
+def kind_of(name: str, option: str) -> str:
+    """Return the name of a kind of detector that is there, or refuse it."""
+    from uavsim.plugins import PluginError, find
+
+    try:
+        found: str = find("detector", name).name
+    except PluginError as error:
+        raise typer.BadParameter(f"detector {error}", param_hint=option) from None
+    return found
 
 
 def _launches(source: str | None, sigma: float) -> "tuple[DetectorSettings, Launches, str]":

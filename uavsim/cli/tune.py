@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, finite, folder, user_input
-from uavsim.cli.roc import load
+from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, Plugin, finite, folder, plug_in, user_input
+from uavsim.cli.roc import kind_of, load
 from uavsim.files import write_toml
 from uavsim.folders import FilePlace, Place
 
@@ -21,6 +21,7 @@ def tune(
     seed: Annotated[int, typer.Option(min=0, max=LARGEST_SEED, help="Tuned on; the next one scores.")] = 1,
     trials: Annotated[int, typer.Option(min=10, max=20_000, help="Launches; twice as many score.")] = 200,
     workers: Annotated[int | None, typer.Option(min=1, max=1024, help="Threads; one a processor without it.")] = None,
+    plugin: Plugin = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder, or file that ends in .toml, to write.")] = None,
     overwrite: Overwrite = False,
 ) -> None:
@@ -37,7 +38,8 @@ def tune(
     from uavsim.views import terminal
     from uavsim.views import tuning as view
 
-    kind = kind_of(detector)
+    plug_in(plugin)
+    kind = None if detector is None else kind_of(detector, "--detector")
     loaded = load(scenario)
     with user_input():
         hours = tuning.hours_for(false_alarms)
@@ -45,12 +47,13 @@ def tune(
     one = out is not None and out.suffix == ".toml"
     place = folder(out, f"tune-{loaded.name}-{seed}", overwrite=overwrite, kind=FilePlace if one else Place)
     with place as held:  # before anything is computed in vain
-        if patience := reach.tuning_told(hours, loaded.accelerometer.description().rate):
-            terminal.say(patience)
+        rate = loaded.accelerometer.description().rate
+        if plain := reach.plain([tuning.own_keys(loaded.detector, kind)], rate):
+            terminal.say(reach.tuning_told(hours, rate, reach.why(plain)))
         with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
             found = tuning.tune(
                 loaded,
-                kind,  # type: ignore[arg-type]
+                kind,
                 budget=false_alarms,
                 seed=seed,
                 trials=trials,
@@ -63,15 +66,3 @@ def tune(
             view.save(found, held.folder)
     view.print_tuned(found)
     terminal.say(f"written to {held.target}")
-
-
-def kind_of(name: str | None) -> str | None:
-    """Kind of detector of a name, None without it."""
-    from sensors.choice import nearest, shown
-    from uavsim.studies.operating import KINDS
-
-    if name is None or name in KINDS:
-        return name
-    near = nearest(name, KINDS, cutoff=0.4)
-    hint = f"did you mean {near!r}?" if near else f"there are {', '.join(KINDS)}"
-    raise typer.BadParameter(f"unknown detector {shown(name)}; {hint}", param_hint="--detector")

@@ -13,6 +13,7 @@ from uavsim import __version__
 from uavsim.flight import Flight, frame
 from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
+from uavsim.onboard.launch.guarded import STATE
 from uavsim.score_keys import AIRSPEED, FLIGHT, PHASES, PRESSURE, PRESSURES
 
 LOT = 50_000  # readings that are plain numbers at once
@@ -59,8 +60,9 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
 
 def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], list[float]]:
     """Return the detector's state at each reading, and when it recognised a launch."""
-    level, count, total = array("q"), array("q"), array("q")
-    triggered, recognised = array("b"), array("b")
+    told = [name for name in STATE if hasattr(detector, name)]
+    state = {name: array("d") for name in STATE}
+    recognised = array("b")
     detections: list[float] = []
     resume = np.inf
     step = detector.step
@@ -72,14 +74,23 @@ def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], lis
         if seen:
             detections.append(t)
             resume = t + PAUSE
-        level.append(detector.level)
-        count.append(detector.count)
-        total.append(detector.total)
-        triggered.append(detector.triggered)
+        for name in told:
+            value = getattr(detector, name)
+            state[name].append(np.nan if value is None else value)
         recognised.append(seen)
-    whole = {name: np.array(values) for name, values in (("level", level), ("count", count), ("total", total))}
-    flags = {name: np.array(v, dtype=bool) for name, v in (("triggered", triggered), ("recognised", recognised))}
-    return {**whole, **flags}, detections
+    columns = {name: _column(np.array(state[name]), len(recognised), of_flags=name == "triggered") for name in STATE}
+    return {**columns, "recognised": np.array(recognised, dtype=bool)}, detections
+
+
+def _column(values: Array, rows: int, *, of_flags: bool) -> NDArray[Any]:
+    """Return a state of the detector as whole numbers or flags where that is what it tells; NaN where it tells none."""
+    if not values.size:
+        return np.full(rows, np.nan)
+    if np.isnan(values).any():
+        return values
+    if of_flags:
+        return values.astype(bool)
+    return values.astype(np.int64) if (values == np.round(values)).all() else values
 
 
 def _rows(readings: Array) -> Iterator[list[float]]:

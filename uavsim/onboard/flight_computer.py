@@ -30,14 +30,14 @@ Sees readings and time, never truth. Scalar, constant memory.
 """
 
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import isnan, nan, radians
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Any
 
 from annotated_types import Interval
 
 from uavsim import airdata
+from uavsim.onboard.interface import Commands, Detector, Estimate, Estimator, News
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_FORCE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.stamps import Stamps, jump
 
@@ -45,52 +45,6 @@ STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
 LONGEST_STEP = 0.02  # s; a gap between readings counts as no more than this in an integral
 MOST_EVENTS = 10_000  # that are kept, then the oldest go; a flight has some ten
 RAIL_BLOCK = 0.5  # s, over which the mean on the rail is taken; the block before the last one is used
-
-Estimate = tuple[float, float, float, float, float, float, bool, float, float]
-"""t, airspeed, airspeed_sd, airspeed_raw, p_total, p_static, valid, nis_total, nis_static."""
-Feel = Callable[[float, float, float, float], None]
-"""Takes a reading of specific force, m/s^2, body axes: t, fx, fy, fz."""
-Commands = tuple[float, float, float, float, float]
-"""Wing (0, 1), throttle (0 … 1), pitch, roll (rad), stabiliser engaged (0, 1)."""
-
-
-class Detector(Protocol):
-    """What the computer asks of a launch detector."""
-
-    def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
-        """Take one reading; True once, on the one that makes the launch recognised."""
-
-    def reset(self) -> None:
-        """Forget everything and watch again."""
-
-
-class Estimator(Protocol):
-    """What the computer asks of an airspeed estimator."""
-
-    def step(
-        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
-    ) -> Estimate | None:
-        """Take one reading of the head; None if it is not newer than the last."""
-
-    @property
-    def aided(self) -> bool:
-        """Whether it wants the readings of specific force."""
-
-    @property
-    def accelerometer(self) -> Feel:
-        """What takes a reading of specific force; another, quicker one perhaps once a launch has been recognised."""
-
-    def tidy(self) -> None:
-        """Do what can wait until the estimate has been told: with the next reading of specific force."""
-
-    def launched(self, t: float) -> None:
-        """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
-
-    def rearmed(self, t: float) -> None:
-        """Be told that it was none."""
-
-    def unfolding(self, t: float) -> None:
-        """Be told that the wings have been commanded out at `t`, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +156,7 @@ class FlightComputer:
         self.commands: Commands = (0.0, 0.0, radians(settings.launch_pitch_deg), 0.0, 0.0)
         self.events: list[dict[str, Any]] = []
         self._feel = estimator.accelerometer if estimator.aided else None
-        self._news: list[tuple[float, str, str, str]] = getattr(estimator, "news", [])
+        self._news: News = estimator.news
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY

@@ -4,18 +4,13 @@ A new one is a file, with its settings and its kind, and its group below.
 """
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
 from uavsim.plants.centrifuge import CentrifugeSettings
 from uavsim.plants.in_jsbsim import NAME
 from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.launch_curve import LaunchCurveSettings
 from uavsim.plants.wind_tunnel import WindTunnelSettings
-
-if TYPE_CHECKING:
-    KindName = str
-else:
-    KindName = Literal[tuple(KINDS)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,13 +20,17 @@ class PlantSettings:
     Attributes
     ----------
     kind
-        "jsbsim" flies the aircraft off its catapult; the others are rigs that hold the sensors and the detector.
+        "jsbsim" flies the aircraft off its catapult; the others are rigs that hold the sensors and the detector. Others
+        come from packages, from `--plugin` or from Python.
+    options
+        Settings of a plant that is not one of ours, as that has them.
     """
 
-    kind: KindName = NAME
+    kind: str = NAME
     launch_curve: LaunchCurveSettings = field(default_factory=LaunchCurveSettings)
     centrifuge: CentrifugeSettings = field(default_factory=CentrifugeSettings)
     wind_tunnel: WindTunnelSettings = field(default_factory=WindTunnelSettings)
+    options: dict[str, Any] | None = field(default=None, hash=False)
 
     @property
     def chosen(self) -> Kind:

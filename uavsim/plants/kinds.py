@@ -75,9 +75,21 @@ def plant(name: str, *, flies: bool = False, rings: bool = False, launches: bool
     """
 
     def register(cls: C) -> C:
-        options: Any = getattr(cls, "Settings", None)
-        group = "" if options is None else OPTIONS
-        KINDS.add(Kind(name, cls, group, options, flies=flies, rings=rings, launches=launches))
+        KINDS.add(kind_of(cls, name, flies=flies, rings=rings, launches=launches))
         return cls
 
     return register
+
+
+def kind_of(cls: Callable[..., Any], name: str, **says: Any) -> Kind:
+    """Return the kind that a class or function is, without registering it.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be called.
+    """
+    if not callable(cls):
+        raise ValueError(f"plant {name!r}: {cls!r} cannot be called")  # noqa: TRY004 (one line for the user)
+    options = getattr(cls, "Settings", None)
+    return Kind(name, cls, "" if options is None else OPTIONS, options, **says)

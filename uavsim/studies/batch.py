@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from uavsim.cosim import draw, fly
 from uavsim.flight import Flight
 from uavsim.interrupts import Interrupts
+from uavsim.plugins import load, loaded
 from uavsim.scenario import Scenario, scenario_of
 from uavsim.score import HIDDEN
 from uavsim.studies.airspeed_flights import Course, course
@@ -145,7 +146,13 @@ def fly_seeds(
             _in_turn(scenario, seeds, finished)
         else:
             fly_one = partial(_one_of, scenario)
-            lost = each(fly_one, list(enumerate(seeds)), workers=min(workers, len(seeds)), done=finished)
+            lost = each(
+                fly_one,
+                list(enumerate(seeds)),
+                workers=min(workers, len(seeds)),
+                done=finished,
+                first=partial(load, loaded()),
+            )
     except KeyboardInterrupt:
         pass  # what was finished tells it
     ordered = [done[position] for position in sorted(done)]

@@ -1,62 +1,23 @@
 """What a launch detector makes of long records and of many short ones, decided as by `step`, at 1e8 samples a second.
 
-A detector is built from its settings as for a flight, and its numbers are handed to the compiled loop of its kind
-(`uavsim.studies.kernels`). Samples are taken at t_k = k / rate.
-
-Notes
------
-A new kind of detector needs three things: a kernel, an entry in `MAKERS` that hands its numbers over, and nothing else:
-the tests hold every kind that `uavsim.onboard.launch` has against its own `step`.
+A detector is built from its settings as for a flight, and hands over its rule as a loop over arrays
+(`uavsim.onboard.launch.compiled`). One that has none is stepped, a hundred times slower. Samples are taken at
+t_k = k / rate.
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 from itertools import repeat
-from math import nan
 from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch import (
-    AdaptiveCusum,
-    AltOs,
-    ArduPilot,
-    Cusum,
-    Detector,
-    DetectorSettings,
-    DoubleThreshold,
-    GlrBank,
-    Inav,
-    MultiLevelWindow,
-    Paparazzi,
-    Px4,
-    Px4Norm,
-    SequenceWindow,
-    SingleThreshold,
-    SlidingWindow,
-    ThresholdWindow,
-    build,
-)
-from uavsim.onboard.launch.detector import ROUNDING
-from uavsim.onboard.launch.field import BLOCK
-from uavsim.onboard.launch.glr import SCALE
+from uavsim.onboard.interface import Detector
+from uavsim.onboard.launch import DetectorSettings, build
+from uavsim.onboard.launch.compiled import Forces, Loop
 from uavsim.onboard.plausible import MOST_FORCE
 
-Forces = NDArray[np.float64] | NDArray[np.float32]
 Indices = NDArray[np.int64]
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """A kernel's name, a detector's numbers, and its state before the first sample; `rows`: what it reads."""
-
-    kernel: str
-    p: tuple[float, ...]
-    q: tuple[int, ...] | Indices = (0,)
-    x: tuple[float, ...] = (0.0,)
-    y: tuple[int, ...] = (0,)
-    rows: tuple[str, ...] = field(default=())  # signed axes, or "any"; () is the settings' own
 
 
 class BatchDetector:
@@ -80,22 +41,20 @@ class BatchDetector:
         Settings that do not fit together.
     """
 
-    __slots__ = ("_k", "_kernel", "_parts", "_rows", "_x", "_y", "columns", "rate", "settings")
+    __slots__ = ("_k", "_loop", "_rows", "_run", "_x", "_y", "columns", "rate", "settings")
 
     def __init__(self, settings: DetectorSettings, rate: float) -> None:
         self.settings, self.rate = settings, float(rate)
-        detector = build(settings, rate)
-        self._parts = MAKERS[type(detector)](detector)
-        self._rows = self._parts.rows or (("any",) if settings.axes == "any" else settings.axes)
+        self._loop, self._run = loop_of(build(settings, rate))
+        self._rows = self._loop.rows or (("any",) if settings.axes == "any" else settings.axes)
         read = (0, 1, 2) if "any" in self._rows else sorted({"xyz".index(row[1]) for row in self._rows})
         self.columns = tuple(read)
-        self._kernel = kernel(self._parts.kernel)
         self.reset()
 
     def reset(self) -> None:
         """Forget everything: the next sample is number 0."""
         self._k = 0
-        self._x, self._y = np.array(self._parts.x, np.float64), np.array(self._parts.y, np.int64)
+        self._x, self._y = np.array(self._loop.x, np.float64), np.array(self._loop.y, np.int64)
 
     def alarms(self, force: Forces) -> Indices:
         """Take the next samples.
@@ -137,8 +96,7 @@ class BatchDetector:
 
     def _take(self, force: Forces, most: int, rate: float) -> Indices:
         out = np.empty(max(1, most), np.int64)
-        p = self._parts
-        count = self._kernel(self._read(force), self._k, rate, p.p, p.q, self._x, self._y, out)
+        count = self._run(self._read(force), self._k, rate, self._loop.p, self._loop.q, self._x, self._y, out)
         self._k += len(force)
         return out[:count]
 
@@ -163,98 +121,34 @@ def _row(force: Forces, name: str) -> Forces:
     return column if name[0] == "+" else -column
 
 
-def kernel(name: str) -> Callable[..., int]:
-    """Return the compiled loop of a name; numba is loaded here."""
-    from uavsim.studies import kernels, kernels_field
-    from uavsim.studies.compiled import JIT, on_plain_numbers
-
-    found: Callable[..., int] = getattr(kernels, name, None) or getattr(kernels_field, name)
-    return found if JIT else on_plain_numbers(found)
+def has_loop(settings: DetectorSettings, rate: float) -> bool:
+    """Whether the detector that settings name has its rule as a loop."""
+    return hasattr(build(settings, rate), "loop")
 
 
-# -- numbers of each detector as it was built ------------------------------------------------------------------------
+def loop_of(detector: Any) -> tuple[Loop, Callable[..., int]]:
+    """Return a detector's loop and what runs it; numba is loaded here, if there is a loop."""
+    if not hasattr(detector, "loop"):
+        run = stepped(detector)
+        return Loop(run, (), rows=("+x", "+y", "+z")), run
+    found: Loop = detector.loop()
+    return found, found.function()
 
 
-def _nested(d: Any) -> Parts:
-    c = d._counters[0]
-    q = c._samples, c._levels, c._needed, c._of, int(c._rearm)
-    axes = len(d._counters)
-    return Parts("nested" if axes == 1 else "nested_axes", (c._trigger, c._threshold), q, y=(0,) * (1 + 4 * axes))
+def stepped(detector: Detector) -> Callable[..., int]:
+    """Return what steps a detector through arrays; its state is its own, and a record that begins at 0 resets it."""
 
+    def run(f: Forces, k0: int, rate: float, _p: object, _q: object, _x: object, _y: object, out: Indices) -> int:
+        if k0 == 0:
+            detector.reset()
+        alarms = 0
+        for k, (fx, fy, fz) in enumerate(f.T.tolist(), k0):
+            if detector.step(k / rate, fx, fy, fz):
+                detector.reset()
+                out[alarms] = k
+                alarms += 1
+                if alarms == out.size:
+                    break
+        return alarms
 
-def _sliding(d: Any) -> Parts:
-    return Parts("sliding", (d._threshold,), (d._samples, d._needed), y=(0,) * (3 + d._samples))
-
-
-def _sequence(d: Any) -> Parts:
-    return Parts("sequence", (d._trigger, d._threshold), (d._samples, d._sequence, d._needed), y=(0,) * 4)
-
-
-def _hold(d: Any) -> Parts:
-    return Parts("hold", (d._trigger, d._threshold, d._window, d._period), y=(0, 0))
-
-
-def _cusum(d: Any) -> Parts:
-    return Parts("cusum", (d._reference, d._rise, d._fall, d._limit, d._period))
-
-
-def _adaptive_cusum(d: Any) -> Parts:
-    p = d._reference, d._rise, d._fall, d._least, d._highest, d._gain, d._most, d._follow, d._forget, d._period
-    return Parts("adaptive_cusum", p, x=(0.0, 0.5 * d._most, 0.0))
-
-
-def _glr(d: Any) -> Parts:
-    lengths, limits = [n for n, _ in d._windows], [limit for _, limit in d._windows]
-    q = np.array([len(lengths), *lengths, *limits], np.int64)
-    state = (0, 0, lengths[-1], *(0,) * (len(lengths) + lengths[-1]))
-    return Parts("glr", (d._reference, d._fall, d._span, SCALE), q, y=state)
-
-
-_NO_MEAN = nan, nan, 0.0, 0.0
-
-
-def _px4(d: Any) -> Parts:
-    p = d._acceleration, d._exceeded, d._interval, d._period, BLOCK, ROUNDING
-    return Parts("px4", p, x=(*_NO_MEAN, 0.0, 0.0))
-
-
-def _px4_norm(d: Any) -> Parts:
-    p = d._acceleration, d._exceeded, d._interval, d._period, BLOCK, ROUNDING
-    return Parts("px4_norm", p, x=(nan,) * 6 + (0.0,) * 6, rows=("+x", "+y", "+z"))
-
-
-def _ardupilot(d: Any) -> Parts:
-    p = d._acceleration, d._delay, d._interval, d._period, BLOCK, ROUNDING
-    return Parts("ardupilot", p, x=(*_NO_MEAN, *(0.0,) * 7), y=(0, 0))
-
-
-def _inav(d: Any) -> Parts:
-    p = d._acceleration, d._needed, d._period, d._b0, d._a1, d._a2
-    return Parts("inav", p, (int(d._cutoff),), x=(0.0, 0.0, 0.0), y=(0, 0))
-
-
-def _paparazzi(d: Any) -> Parts:
-    return Parts("paparazzi", (d._acceleration, d._interval, d._period), (d._calls,), y=(0, 0))
-
-
-def _altos(d: Any) -> Parts:
-    return Parts("altos", (d._acceleration, d._speed, d._period, BLOCK, ROUNDING), x=(*_NO_MEAN, 0.0))
-
-
-MAKERS: dict[type[Detector], Callable[[Any], Parts]] = {
-    MultiLevelWindow: _nested,
-    ThresholdWindow: _nested,
-    SlidingWindow: _sliding,
-    SequenceWindow: _sequence,
-    SingleThreshold: _hold,
-    DoubleThreshold: _hold,
-    AdaptiveCusum: _adaptive_cusum,
-    Cusum: _cusum,
-    GlrBank: _glr,
-    Px4: _px4,
-    Px4Norm: _px4_norm,
-    ArduPilot: _ardupilot,
-    Inav: _inav,
-    Paparazzi: _paparazzi,
-    AltOs: _altos,
-}
+    return run

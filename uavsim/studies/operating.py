@@ -8,15 +8,19 @@ Poisson (Garwood) bands, 95 % each at every point on its own. What counts as a d
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast, get_args
+from math import nan
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch import DetectorSettings, Kind
-from uavsim.onboard.launch.settings import FIELD, USES
+from uavsim.onboard.launch import KINDS, DetectorSettings
+from uavsim.onboard.launch.kinds import OPTIONS, Level
+from uavsim.onboard.launch.settings import get, kind_of
+from uavsim.onboard.launch.settings import with_key as changed_key
+from uavsim.plugins import check_options
 from uavsim.settings import SettingError, read
 from uavsim.studies.false_alarms import DISTURBANCES, FalseAlarms, count
 from uavsim.studies.intervals import share_interval
@@ -30,61 +34,42 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Cell = tuple[float, float, bool]
 
-KINDS: tuple[Kind, ...] = get_args(Kind)
 LOT = 50  # launches that are read at once
-THRESHOLDS = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4, 1.6)  # of the level as set
-LIMITS = (0.2, 0.35, 0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0)
-FIELDS = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0)  # those of autopilots are low
-BESIDE = {"threshold": ("trigger",), "adaptive.limit": ("adaptive.highest", "adaptive.gain")}
 SHARES = {"mix": 1.0, "vibration": 0.25, "soft drops": 0.25, "centrifuge": 0.25}  # of the hours, by class
 PEAKS, SIGMAS = (5.0, 6.0, 7.0, 10.0, 15.0), (0.05, 0.3, 1.0)  # g, cells of the comparison
 CELLS: tuple[Cell, ...] = tuple((p, s, bump) for p in PEAKS for s in SIGMAS for bump in (False, True))
-COMPARED: tuple[Kind, ...] = ("px4", "px4-norm", "ardupilot", "inav", "paparazzi")
 LATENCIES = ("crossing_median", "crossing_p95", "onset_median", "onset_p95")
 
 
 # -- a detector's own level ------------------------------------------------------------------------------------------
 
 
-def level_key(kind: Kind) -> str:
-    """Key of the level that a kind is swept along."""
-    for key in USES[kind]:
-        if key == "threshold":
-            return key
-        group = getattr(DetectorSettings(), key)
-        if is_dataclass(group):
-            names = [f.name for f in fields(group)]
-            return f"{key}.{next(name for name in ('limit', 'acceleration', 'threshold') if name in names)}"
-    raise ValueError(f"{kind} has no level")
+def level_of(settings: DetectorSettings) -> Level | None:
+    """What the detector's kind is swept along; None if its operating curve is a point."""
+    return kind_of(settings).level
 
 
 def level(settings: DetectorSettings) -> float:
-    """Value of the level that a detector's kind is swept along."""
-    return cast(float, get(settings, level_key(settings.kind)))
-
-
-def get(settings: DetectorSettings, key: str) -> Any:
-    """Value of a key, a group's joined by a dot."""
-    found: Any = settings
-    for name in key.split("."):
-        found = getattr(found, name)
-    return found
+    """Value of the level that a detector's kind is swept along; NaN if there is none."""
+    own = level_of(settings)
+    return nan if own is None else float(get(settings, own.key))
 
 
 def at_level(settings: DetectorSettings, value: float) -> DetectorSettings:
-    """The same detector at another level; what belongs to the level (`BESIDE`) keeps its ratio to it.
+    """The same detector at another level; what belongs to the level keeps its ratio to it.
 
     Raises
     ------
     SettingError
         If the level is out of its bounds.
     """
-    key = level_key(settings.kind)
-    changed = with_key(settings, key, value)
-    for other in BESIDE.get(key, ()):
-        own = get(settings, other)
-        if own is not None:
-            changed = with_key(changed, other, own * value / level(settings))
+    own = level_of(settings)
+    assert own is not None
+    changed = with_key(settings, own.key, value)
+    for other in own.beside:
+        beside = get(settings, other)
+        if beside is not None:
+            changed = with_key(changed, other, beside * value / level(settings))
     return changed
 
 
@@ -97,23 +82,17 @@ def with_key(settings: DetectorSettings, key: str, value: Any) -> DetectorSettin
         If the value is out of its bounds.
     """
     first, _, inner = key.partition(".")
-    if not inner:
-        read(DetectorSettings, {first: value})
-        return replace(settings, **{first: value})
-    read(DetectorSettings, {first: {inner: value}})
-    return replace(settings, **{first: replace(getattr(settings, first), **{inner: value})})
-
-
-def factors(kind: Kind) -> tuple[float, ...]:
-    """Levels that are tried, over the one that is set."""
-    if kind in FIELD:
-        return FIELDS
-    return THRESHOLDS if level_key(kind) == "threshold" else LIMITS
+    if first == OPTIONS:
+        check_options("detector", kind_of(settings).options, {inner: value})
+    else:
+        read(DetectorSettings, {first: {inner: value} if inner else value})
+    return changed_key(settings, key, value)
 
 
 def levels(settings: DetectorSettings) -> Iterator[tuple[float, DetectorSettings]]:
     """The levels that are tried, over the one that is set, and the detectors; those out of bounds are left out."""
-    for factor in factors(settings.kind):
+    own = level_of(settings)
+    for factor in own.factors if own is not None else (1.0,):
         with suppress(SettingError):
             yield factor, at_level(settings, level(settings) * factor) if factor != 1.0 else settings
 
@@ -128,7 +107,8 @@ class Operating:
     Attributes
     ----------
     rows
-        A row a detector and level: `detector`, `key`, `level` (SI), `factor` (1: as set), `trials`, `detected`, `early`
+        A row a detector and level: `detector`, `key` and `unit` of the level (empty: it has none), `level` (NaN),
+        `factor` (1: as set), `trials`, `detected`, `early`
         (false alarms before the onset), `pd`, `pd_low`, `pd_high`; latencies `crossing_median`, `crossing_p95`,
         `onset_median`, `onset_p95`, s; and for each class of disturbances `CLASS.hours`, `CLASS.alarms`,
         `CLASS.per_hour`, `CLASS.low`, `CLASS.high`.
@@ -204,7 +184,9 @@ def operate(
     )
     rows = []
     for i, (own, factor, chosen) in enumerate(swept):
-        row = {"detector": own.kind, "key": level_key(own.kind), "level": level(chosen), "factor": factor}
+        swept_along = level_of(own)
+        named = ("", "") if swept_along is None else (swept_along.key, swept_along.unit)
+        row = {"detector": own.kind, "key": named[0], "unit": named[1], "level": level(chosen), "factor": factor}
         row |= scored(verdicts[i])
         for kind in DISTURBANCES:
             row |= {f"{kind}.{key}": value for key, value in rated(alarms[kind][i]).items()}
@@ -303,7 +285,12 @@ class Shortfall:
     by: str
 
 
-def not_better(table: "pd.DataFrame", own: str, rivals: Sequence[str] = COMPARED) -> Iterator[Shortfall]:
+def rivals() -> list[str]:
+    """What autopilots fly, which the default is compared with."""
+    return [kind.name for kind in KINDS.values() if kind.autopilot]
+
+
+def not_better(table: "pd.DataFrame", own: str) -> Iterator[Shortfall]:
     """Cells in which a detector is not better than a rival.
 
     Better is who detects more launches, all early alarms and misses being lost, and of two that detect as many the
@@ -313,7 +300,7 @@ def not_better(table: "pd.DataFrame", own: str, rivals: Sequence[str] = COMPARED
         place = float(rows["peak_g"].iloc[0]), float(rows["sigma_g"].iloc[0]), bool(rows["bump"].iloc[0])
         by_name = rows.set_index("detector")
         mine = by_name.loc[own]
-        for rival in (r for r in rivals if r in by_name.index and r != own):
+        for rival in (r for r in rivals() if r in by_name.index and r != own):
             theirs = by_name.loc[rival]
             if theirs["detected"] > mine["detected"]:
                 yield Shortfall(place, rival, "probability")

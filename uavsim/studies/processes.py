@@ -38,6 +38,7 @@ def each(
     *,
     workers: int,
     done: Callable[[list[tuple[int, R]]], None],
+    first: Callable[[], object] | None = None,
 ) -> list[int]:
     """Do `work` on each of `given`.
 
@@ -51,6 +52,8 @@ def each(
         Processes.
     done
         Called with positions in `given` and what they gave, as they come; nothing interrupts it.
+    first
+        Called in each process before it takes in anything else: what `work` and its arguments need to be known.
 
     Returns
     -------
@@ -63,7 +66,7 @@ def each(
         Somebody wants to end: no part was begun since, those under way are done. The second time they are not.
     """
     with Interrupts() as asked:
-        crew = _Crew(work, given, workers)
+        crew = _Crew(work, given, workers, first)
         try:
             while asked.count < 2:
                 if asked.count:
@@ -85,8 +88,10 @@ def each(
 class _Crew(Generic[A, R]):
     """Workers, what they do, and what is left to do."""
 
-    def __init__(self, work: Callable[[A], R], given: Sequence[A], size: int) -> None:
-        self._work, self._given, self._size = work, given, size
+    def __init__(
+        self, work: Callable[[A], R], given: Sequence[A], size: int, first: Callable[[], object] | None
+    ) -> None:
+        self._work, self._given, self._size, self._first = work, given, size, first
         self._workers: list[_Worker] = []
         self._fresh, self._again = deque(range(len(given))), deque[int]()
         self._died = [0] * len(given)
@@ -107,7 +112,7 @@ class _Crew(Generic[A, R]):
     def _give(self, part: int) -> None:
         idle = next((worker for worker in self._workers if worker.part is None), None)
         if idle is None:
-            idle = _Worker(self._work)
+            idle = _Worker(self._work, self._first)
             self._workers.append(idle)
         idle.give(part, self._given[part])
 
@@ -175,7 +180,7 @@ class _Worker:
         Whether it has said that it can work.
     """
 
-    def __init__(self, work: Callable[[Any], Any]) -> None:
+    def __init__(self, work: Callable[[Any], Any], first: Callable[[], object] | None) -> None:
         self.part: int | None = None
         self.began = False
         self.line, theirs = SPAWN.Pipe()
@@ -185,6 +190,7 @@ class _Worker:
         with withheld():
             self.process.start()
         theirs.close()
+        self._send(first)
         self._send(work)
 
     def give(self, part: int, argument: Any) -> None:
@@ -211,6 +217,9 @@ def _serve(line: "Connection[Any, Any]") -> None:
     Thread(target=_end_with_parent, daemon=True).start()
     ignore()
     try:
+        first = line.recv()
+        if first is not None:
+            first()
         work = line.recv()
         line.send(None)
         while True:

@@ -1,16 +1,20 @@
-"""What is within reach where numba's JIT is off, so that `roc` ends in about ten minutes instead of in hours.
+"""What is within reach of detectors that run in plain Python, so that `roc` ends in about ten minutes, not in hours.
 
-Plain Python takes `COST` for a sample and detector, a hundred times and more what a compiled loop takes. Hours and
-launches beyond `MOST` and `MOST_TRIED` are left out, which is told. What is left gives what it gives with the JIT.
+Those are detectors without a compiled loop, and all of them where numba's JIT is off. Plain Python takes `COST` for a
+sample and detector, a hundred times and more what a compiled loop takes. Hours and launches beyond `MOST` and
+`MOST_TRIED` are left out, which is told. What is left gives what it gives with a loop.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import ceil
 
-from uavsim.studies.compiled import JIT
+from uavsim.onboard.launch import DetectorSettings
+from uavsim.onboard.launch.compiled import jit
+from uavsim.studies.detections import has_loop
 from uavsim.studies.false_alarms import PIECE, PIECES_AN_HOUR
 
-COST = 0.4e-6  # s a sample and detector, the mean over the kinds on one core of 2024; they take 0.1 to 0.9
+COST = 0.4e-6  # s a sample and detector, the mean over our kinds on one core of 2024; they take 0.1 to 0.9
 MOST = 1.0e9  # samples times detectors of disturbances, 7 minutes
 MOST_TRIED = 1.5e8  # samples times detectors of launches, a minute, and as many in the cells
 LAUNCH = 1.9  # s of a launch until it is decided; most of it is the wait before
@@ -27,34 +31,45 @@ class Work:
     cells: int
 
 
-def within_reach(asked: Work, *, detectors: int, compared: int, rate: float, jit: bool = JIT) -> Work:
-    """Return what ends in about ten minutes; nothing grows, and with the JIT nothing changes.
+def plain(detectors: Iterable[DetectorSettings], rate: float) -> list[DetectorSettings]:
+    """Return those of some detectors that run in plain Python."""
+    return [one for one in detectors if not (jit() and has_loop(one, rate))]
+
+
+def why(detectors: Iterable[DetectorSettings]) -> str:
+    """Say why some detectors run in plain Python."""
+    names = list(dict.fromkeys(one.kind for one in detectors))
+    return f"{', '.join(names)}: without a compiled loop" if jit() else OFF
+
+
+def within_reach(asked: Work, *, detectors: int, compared: int, rate: float) -> Work:
+    """Return what ends in about ten minutes; nothing grows, and without plain Python nothing changes.
 
     Parameters
     ----------
     asked
         What the user wants.
     detectors, compared
-        Settings in the sweep; settings times cells in the comparison.
+        Settings in the sweep, and settings times cells in the comparison, that run in plain Python.
     rate
         Samples a second, Hz.
     """
-    if jit:
+    if not detectors and not compared:
         return asked
-    pieces = int(MOST / (PIECE * rate * detectors))
+    pieces = int(MOST / (PIECE * rate * max(1, detectors)))
     mix = 1
     while mix + 1 + 3 * ceil((mix + 1) / 4) <= pieces:  # three classes have a quarter of the hours each
         mix += 1
     tried = MOST_TRIED / (LAUNCH * rate)
     return Work(
         min(asked.hours, mix / PIECES_AN_HOUR),
-        min(asked.trials, max(1, int(tried / detectors))),
+        min(asked.trials, max(1, int(tried / max(1, detectors)))),
         min(asked.cells, max(1, int(tried / max(1, compared)))),
     )
 
 
-def told(asked: Work, done: Work) -> str:
-    """Say what is left out; empty if nothing is."""
+def told(asked: Work, done: Work, reason: str) -> str:
+    """Say what is left out, and why; empty if nothing is."""
     names = (("hours", "h of the mix"), ("trials", "launches"), ("cells", "launches a cell"))
     changed = [
         f"{getattr(done, key):.2g} {what} instead of {getattr(asked, key):g}"
@@ -63,12 +78,10 @@ def told(asked: Work, done: Work) -> str:
         for key, what in names
         if getattr(done, key) != getattr(asked, key)
     ]
-    return f"{OFF}: so that it ends in about ten minutes, {', '.join(changed)}" if changed else ""
+    return f"{reason}: so that it ends in about ten minutes, {', '.join(changed)}" if changed else ""
 
 
-def tuning_told(hours: float, rate: float, *, jit: bool = JIT) -> str:
-    """Say how long `tune` takes for the hours that its budget needs; empty with the JIT."""
-    if jit:
-        return ""
+def tuning_told(hours: float, rate: float, reason: str) -> str:
+    """Say how long `tune` takes in plain Python for the hours that its budget needs, and why."""
     minutes = COUNTED * hours * 3600.0 * rate * COST / 60.0
-    return f"{OFF}: this takes about {minutes:.0f} min, and less for a larger --false-alarms"
+    return f"{reason}: this takes about {minutes:.0f} min, and less for a larger --false-alarms"

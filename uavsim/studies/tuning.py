@@ -15,20 +15,22 @@ stroke is too short, are left out. The other disturbances are counted at the end
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
-from math import ceil, inf
+from math import ceil, inf, nan
 from typing import Any
 
 import numpy as np
 
-from uavsim.onboard.launch import DetectorSettings, Kind
-from uavsim.onboard.launch.settings import USES
+from uavsim.onboard.launch import DetectorSettings
+from uavsim.onboard.launch.compiled import jit
+from uavsim.onboard.launch.kinds import FORCE, Second
+from uavsim.onboard.launch.settings import get, kind_of
 from uavsim.scenario import Scenario
 from uavsim.settings import SettingError
 from uavsim.studies.detections import BatchDetector
 from uavsim.studies.false_alarms import FalseAlarms, count
-from uavsim.studies.operating import at_level, get, level, level_key, scored, tried, with_key
+from uavsim.studies.operating import at_level, level, level_of, scored, tried, with_key
 from uavsim.studies.trials import Flown, Trials, Verdicts
 from uavsim.studies.workers import Progress
 from uavsim.truth import STANDARD_GRAVITY as G0
@@ -47,21 +49,6 @@ SCREEN = 8.0  # a first look takes the hours over this
 FULL = 3  # levels of a row that are counted over all hours
 FINE = 6  # levels between two of the first grid
 DIGITS = 4  # significant ones, of what is written
-
-# What belongs to a kind's level, and the values that are tried: s, m/s, a number, or (`reference`) over the push.
-WINDOWS = (0.005, 0.008, 0.012, 0.018, 0.025, 0.035, 0.050)
-REFERENCES = (0.4, 0.55, 0.7, 0.8, 0.9)
-SECOND: dict[Kind, tuple[str, tuple[float, ...]]] = {
-    "cusum": ("cusum.reference", REFERENCES),
-    "adaptive-cusum": ("threshold", REFERENCES),
-    "glr-bank": ("glr.reference", REFERENCES),
-    "px4": ("px4.time", (0.015, 0.030, 0.050, 0.070)),
-    "px4-norm": ("px4.time", (0.015, 0.030, 0.050, 0.070)),
-    "ardupilot": ("ardupilot.delay", (0.0, 0.1, 0.2)),
-    "inav": ("inav.time", (0.005, 0.010, 0.020, 0.040)),
-    "paparazzi": ("paparazzi.calls", (1, 2, 3, 4, 5, 7)),
-    "altos": ("altos.speed", (0.5, 1.0, 2.0, 3.0, 5.0)),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +99,7 @@ class Tuned:
 
 def tune(
     scenario: Scenario,
-    kind: Kind | None = None,
+    kind: str | None = None,
     *,
     budget: float,
     seed: int,
@@ -148,10 +135,10 @@ def tune(
     return search.scored(best)
 
 
-def own_keys(settings: DetectorSettings, kind: Kind | None = None) -> DetectorSettings:
+def own_keys(settings: DetectorSettings, kind: str | None = None) -> DetectorSettings:
     """The same detector, or another kind, with nothing set that the kind does not read."""
-    chosen = settings.kind if kind is None else kind
-    return DetectorSettings(kind=chosen, axes=settings.axes, **{key: getattr(settings, key) for key in USES[chosen]})
+    chosen = DetectorSettings(kind=settings.kind if kind is None else kind, axes=settings.axes)
+    return replace(chosen, **{key: getattr(settings, key) for key in kind_of(chosen).reads})
 
 
 def hours_for(budget: float) -> float:
@@ -162,11 +149,9 @@ def hours_for(budget: float) -> float:
     ValueError
         If the budget is not above 0 or too small to be shown.
     """
-    from uavsim.studies.compiled import JIT
-
     if not 0.0 < budget < inf:
         raise ValueError(f"--false-alarms = {budget:g}: must be above 0 an hour")
-    most, where = (MOST_HOURS, "") if JIT else (MOST_HOURS_PLAIN, " where numba's JIT is off")
+    most, where = (MOST_HOURS, "") if jit() else (MOST_HOURS_PLAIN, " where numba's JIT is off")
     needed = NONE / (MARGIN * budget)
     if needed > most:
         raise ValueError(
@@ -239,28 +224,33 @@ class _Search:
         self.fresh = (seed + 1) % 2**63
         self.launches, self.workers = _Kept(Flown(scenario)), workers
         self.push = scenario.launcher.peak_specific_force_g * G0
-        self.second, values = SECOND.get(base.kind, ("window", WINDOWS))
-        if base.kind == "adaptive-cusum" and base.adaptive.reference is not None:
-            self.second = "adaptive.reference"  # which the threshold then has no part in
-        scale = self.push if values is REFERENCES else 1.0
-        own = float(get(base, self.second))
-        self.values = tuple(sorted({own, *(value * scale for value in values)}))
+        self.level = level_of(base)
+        if self.level is None:
+            raise ValueError(f"detector {base.kind!r} has no level to tune; it flies with the settings that it has")
+        self.second = kind_of(base).second_of(base)
+        self.values = self._seconds(self.second)
         self.tried = 0
         self._report = progress or (lambda _: None)
         self._begun = 0.0
         BatchDetector(base, self.launches.rate)  # does it fit the rate at all?
 
+    def _seconds(self, second: Second | None) -> tuple[float, ...]:
+        """Values of the second setting, the one that is set among them; NaN where there is no such setting."""
+        if second is None:
+            return (nan,)
+        scale = self.push if second.over_push else 1.0
+        return tuple(sorted({float(get(self.base, second.key)), *(value * scale for value in second.values)}))
+
     def grid(self) -> list[list[DetectorSettings]]:
         """For each value of the second setting its levels, rising; what the scenario refuses is left out."""
-        key = level_key(self.base.kind)
-        limit = key.endswith("limit")
-        levels = [f * level(self.base) for f in LIMITS] if limit else [f * self.push for f in PUSHES]
+        force = self.level is not None and self.level.unit == FORCE
+        levels = [f * self.push for f in PUSHES] if force else [f * level(self.base) for f in LIMITS]
         return [self._row(value, sorted({level(self.base), *levels})) for value in self.values]
 
     def finer(self, found: _Candidate) -> list[list[DetectorSettings]]:
         """The same around a winner: between it and the level below, and half way to its neighbours."""
         values = [found.second]
-        if self.second != "paparazzi.calls":
+        if self.second is not None and not self.second.whole:
             values += [0.5 * (a + b) for a, b in pairwise(self.values) if found.second in (a, b)]
         top = level(found.keeper.settings)
         around = np.geomspace(found.keeper.below, top, FINE + 1)[1:].tolist()
@@ -271,8 +261,9 @@ class _Search:
         row = []
         for one in levels:
             try:
-                whole = self.second.endswith("calls")
-                chosen = with_key(self.base, self.second, int(value) if whole else _short(value))
+                chosen = self.base
+                if self.second is not None:
+                    chosen = with_key(chosen, self.second.key, int(value) if self.second.whole else _short(value))
                 chosen = _rounded(at_level(chosen, one))
                 self._placed(chosen)
             except (SettingError, ValueError):
@@ -295,8 +286,7 @@ class _Search:
         kept = self._kept(rows)
         verdicts = self._tried([one.settings for one in kept], self.seed, self.trials, 0.1)
         found = [
-            _Candidate(one, self._nearest(float(get(one.settings, self.second))), verdict)
-            for one, verdict in zip(kept, verdicts, strict=True)
+            _Candidate(one, self._nearest(one.settings), verdict) for one, verdict in zip(kept, verdicts, strict=True)
         ]
         found += [] if known is None else [known]
         if not found:
@@ -336,8 +326,11 @@ class _Search:
                     kept.setdefault((id(row), silent), _Keeper(row[i], below, alarms, loads))
         return list(dict.fromkeys(kept.values()))
 
-    def _nearest(self, value: float) -> float:
-        """The grid's own value of one that was rounded."""
+    def _nearest(self, settings: DetectorSettings) -> float:
+        """The grid's own value of the second setting, which was rounded."""
+        if self.second is None:
+            return self.values[0]
+        value = float(get(settings, self.second.key))
         return min(self.values, key=lambda own: abs(own - value))
 
     def scored(self, best: _Candidate) -> Tuned:
@@ -392,7 +385,7 @@ class _Search:
 def plain(settings: DetectorSettings) -> dict[str, Any]:
     """Keys and values of a detector that its kind reads, as a scenario's [detector] has them; None is left out."""
     values = asdict(settings)
-    own = {key: values[key] for key in ("kind", *USES[settings.kind], "axes") if values[key] is not None}
+    own = {key: values[key] for key in ("kind", *kind_of(settings).reads, "axes") if values[key] is not None}
     return {key: list(value) if isinstance(value, tuple) else value for key, value in own.items()}
 
 
@@ -402,10 +395,8 @@ def _short(value: float) -> float:
 
 def _rounded(settings: DetectorSettings) -> DetectorSettings:
     """The same with a level, and what goes with it, of few digits."""
-    from uavsim.studies.operating import BESIDE
-
-    key = level_key(settings.kind)
-    for one in (key, *BESIDE.get(key, ())):
+    own = level_of(settings)
+    for one in () if own is None else (own.key, *own.beside):
         value = get(settings, one)
         if value is not None:
             settings = with_key(settings, one, _short(value))

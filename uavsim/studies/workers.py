@@ -32,9 +32,9 @@ def spread(
     An interrupt, or what a part raises, ends it: parts that have not begun are left out, those that have are waited
     for.
     """
-    from uavsim.studies.compiled import JIT
+    from uavsim.onboard.launch.compiled import jit
 
-    if not JIT:  # threads of plain Python wait for each other, and keep an interrupt waiting
+    if not jit():  # threads of plain Python wait for each other, and keep an interrupt waiting
         return _one_by_one(parts, progress)
     with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
         waiting: list[Future[T]] = [pool.submit(part) for part in parts]

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch.settings import USES, reference
+from uavsim.onboard.launch.kinds import Window
+from uavsim.onboard.launch.settings import if_known
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
-from uavsim.views.launch_sum import HEIGHTS, draw_held, held
+from uavsim.views.launch_sum import draw_panels, read_again
 from uavsim.views.marks import flag_all
 from uavsim.views.record import CROSSING_G, Array, Record, Stretch, known
 
@@ -30,20 +31,20 @@ def draw(record: Record) -> "Figure | None":
         return None
     if not record.scenario.plant.chosen.launches:
         return None
-    kind, origin = record.scenario.detector.kind, record.start
-    windows = record.has("detector") and kind.endswith("window")
-    heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else HEIGHTS.get(kind, ()))
+    kind, origin = if_known(record.scenario.detector), record.start
+    windows = record.has("detector") and kind.window is not None
+    heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else tuple(panel.height for panel in kind.panels))
     figure, axes = sheet(record.title, _words(record), heights, (1.5, 1.0), size=(11.5, 8.0))
     columns = list(zip(*axes, strict=True))
     stretches = (record.launch, _recognition(record, origin, record.launch))
-    state = held(record, record.launch[1]) if kind in HEIGHTS else None
+    state = read_again(record, kind.panels, record.launch[1]) if kind.panels and not windows else None
     for column, stretch in zip(columns, stretches, strict=True):
         column[0].set_xlim(*(1e3 * (t - origin) for t in stretch))
         _force(column, record, stretch, origin)
-        if windows:
-            _draw_windows(column[2:], record, _windows(record, stretch, origin))
+        if windows and kind.window is not None:
+            _draw_windows(column[2:], kind.window(record.scenario.detector), _windows(record, stretch, origin))
         elif state is not None:
-            draw_held(column[2:], kind, state, stretch, origin)
+            draw_panels(column[2:], kind.panels, state, stretch, origin)
     named = "true launch" if record.named("true launch") else "release" if record.release is not None else "detection"
     for one in axes[-1]:
         label(one, x=f"time since {named} (t = {origin:.3f} s), ms")
@@ -100,21 +101,10 @@ def _force(column: "Sequence[Axes]", record: Record, stretch: Stretch, origin: f
 
 
 def levels(record: Record) -> dict[str, float]:
-    """Levels of the detector that its kind reads, in g."""
+    """Levels that the detector's kind draws across the force, in g, by their names."""
     settings = record.scenario.detector
-    used = USES[settings.kind]
-    if "threshold" not in used:
-        level = next((getattr(getattr(settings, name), "reference", None) for name in used), None)
-        return {} if level is None else {"c": level / STANDARD_GRAVITY}
-    threshold = settings.threshold
-    if "adaptive" in used:
-        return {"c": reference(threshold, settings.adaptive.reference) / STANDARD_GRAVITY}
-    if "trigger" not in used:
-        return {"level": threshold / STANDARD_GRAVITY}
-    trigger = threshold if settings.trigger is None else settings.trigger
-    if trigger == threshold:
-        return {"$G_1$ = $G_2$": threshold / STANDARD_GRAVITY}
-    return {"$G_1$": trigger / STANDARD_GRAVITY, "$G_2$": threshold / STANDARD_GRAVITY}
+    lines = if_known(settings).lines
+    return {} if lines is None else {name: level / STANDARD_GRAVITY for name, level in lines(settings).items()}
 
 
 # -- windows ---------------------------------------------------------------------------------------------------------
@@ -155,16 +145,11 @@ def _windows(record: Record, stretch: Stretch, origin: float) -> _Windows:
     )
 
 
-def _draw_windows(column: "Sequence[Axes]", record: Record, windows: _Windows) -> None:
+def _draw_windows(column: "Sequence[Axes]", window: Window, windows: _Windows) -> None:
     """Share of samples above the threshold in the window that is open, and which window that is."""
-    settings, x = record.scenario.detector, windows.x
-    share, level = column
+    x, (share, level) = windows.x, column
     share.plot(x, windows.share, color=BLUE, linewidth=1.0, marker=".", markersize=3.5, label="share above $G_2$")
-    used = USES[settings.kind]
-    levels = settings.levels if "levels" in used else 1
-    if "ratio" in used:
-        ratio = settings.ratio
-        share.axhline(ratio, color=RED, linewidth=1.0, linestyle="--", label=f"$k_1$ = {ratio:g}")
+    share.axhline(window.ratio, color=RED, linewidth=1.0, linestyle="--", label=f"$k_1$ = {window.ratio:g}")
     for rows, fill, colour, name in (
         (windows.ended, "none", BLUE, "ends below $k_1$"),
         (windows.recognised, "full", RED, "recognised"),
@@ -174,6 +159,6 @@ def _draw_windows(column: "Sequence[Axes]", record: Record, windows: _Windows) -
     share.set_ylim(-0.05, 1.1)
     label(share, "count / total")
     level.step(x, windows.level, where="post", color=BLUE, linewidth=1.2, label="window open")
-    level.set_ylim(-0.3, levels + 0.4)
-    level.set_yticks(range(0, levels + 1, max(1, levels // 4)))
+    level.set_ylim(-0.3, window.levels + 0.4)
+    level.set_yticks(range(0, window.levels + 1, max(1, window.levels // 4)))
     label(level, "level")

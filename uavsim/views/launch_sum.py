@@ -1,4 +1,4 @@
-"""What a detector without windows holds against its limit, found again from the readings; drawn below the force.
+"""What a detector holds against its limit, found again from the readings; drawn below the force.
 
 A detector sees nothing but readings, so that the same one over the same readings has the same state at every sample.
 """
@@ -10,87 +10,77 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.truth import STANDARD_GRAVITY
+from uavsim.onboard.launch.kinds import Panel
 from uavsim.views.figure import BLUE, RED, label
 from uavsim.views.record import Array, Record, Stretch, within
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from uavsim.onboard.launch import DetectorSettings
-
-G_MS = 1e-3 * STANDARD_GRAVITY  # m/s in 1 g·ms
-HOLDS = ("single-threshold", "double-threshold")
-HEIGHTS: dict[str, tuple[float, ...]] = {"adaptive-cusum": (1.3, 0.8)} | dict.fromkeys(("cusum", *HOLDS), (1.3,))
+CURVE: dict[str, Any] = {"color": BLUE, "linewidth": 1.0}
+DOTS: dict[str, Any] = {"marker": ".", "markersize": 3.5}
+LIMIT: dict[str, Any] = {"color": RED, "linewidth": 1.0, "linestyle": "--"}
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class State:
     """A detector's state, a row a sample; NaN between recognition and the next reset.
 
     Attributes
     ----------
     t
         Time, s.
-    value, limit
-        The sum and its limit, g·ms, or the time held and the one to be held, ms.
-    roughness
-        Of the force, g; NaN where the kind has none.
+    columns
+        By the attributes' names, in their own units.
     recognised
         Samples at which the launch was.
     """
 
     t: Array
-    value: Array
-    limit: Array
-    roughness: Array
+    columns: dict[str, Array]
     recognised: NDArray[np.bool_]
 
 
-def held(record: Record, until: float) -> Held:
+def read_again(record: Record, panels: Sequence[Panel], until: float) -> State:
     """Let the scenario's detector read what it read in flight, until a time in s."""
     from sensors.mounting import attitude, linear
     from uavsim.onboard.launch import build
 
     scenario = record.scenario
+    names = list(dict.fromkeys(attribute for panel in panels for _, attribute in panel.curves))
     detector: Any = build(scenario.detector, scenario.accelerometer.description().rate)
     turn = linear(attitude(*scenario.accelerometer.mounting_deg))
     readings = np.column_stack([record.column("accelerometer", name) for name in ("t", "fx", "fy", "fz")])
     rearmed, rows, asleep = record.times("rearmed"), [], False  # asleep: after recognition nothing is added
     for t, *force in readings[readings[:, 0] <= until].tolist():
         seen = detector.step(t, *(force if turn is None else turn(*force)))
-        rows.append((t, *((np.nan,) * 3 if asleep else _state(detector, scenario.detector)), seen))
+        rows.append((t, *(np.nan if asleep else getattr(detector, name, np.nan) for name in names), seen))
         asleep |= seen
         if rearmed and t >= rearmed[0]:
             rearmed.pop(0)
             detector.reset()
             asleep = False
-    t, value, limit, roughness, recognised = np.array(rows, float).reshape(-1, 5).T
-    return Held(t, value, limit, roughness, recognised > 0.0)
+    t, *columns, recognised = np.array(rows, float).reshape(-1, len(names) + 2).T
+    return State(t, dict(zip(names, columns, strict=True)), recognised > 0.0)
 
 
-def _state(detector: Any, settings: "DetectorSettings") -> tuple[float, float, float]:
-    if settings.kind in HOLDS:
-        return 1e3 * detector.held, 1e3 * settings.window, np.nan
-    if settings.kind == "cusum":
-        return detector.sum / G_MS, settings.cusum.limit / G_MS, np.nan
-    return detector.sum / G_MS, detector.limit / G_MS, detector.roughness / STANDARD_GRAVITY
-
-
-def draw_held(column: "Sequence[Axes]", kind: str, state: Held, stretch: Stretch, origin: float) -> None:
-    """Draw the sum or the time held against its limit, and the roughness that the limit follows."""
-    names = ("time held", "time to be held", "held, ms") if kind in HOLDS else ("sum S", "limit h", "S, g·ms")
-    t, value, limit, roughness, seen = within(
-        stretch, state.t, state.value, state.limit, state.roughness, state.recognised.astype(float)
-    )
-    x = 1e3 * (t - origin)
-    column[0].plot(x, value, color=BLUE, linewidth=1.0, marker=".", markersize=3.5, label=names[0])
-    column[0].plot(x, limit, color=RED, linewidth=1.0, linestyle="--", label=names[1])
-    if seen.any():
-        column[0].plot(x[seen > 0.0], value[seen > 0.0], "o", color=RED, markersize=6, label="recognised")
-    column[0].set_ylim(bottom=0.0)
-    label(column[0], names[2])
-    for axes in column[1:]:
-        axes.plot(x, roughness, color=BLUE, linewidth=1.0, label="roughness r of $f_x$")
-        axes.set_ylim(bottom=0.0)
-        label(axes, "r, g")
+def draw_panels(
+    column: "Sequence[Axes]", panels: Sequence[Panel], state: State, stretch: Stretch, origin: float
+) -> None:
+    """Draw what each panel shows: its first curve, and a second as the limit of the first."""
+    for first, (axes, panel) in enumerate(zip(column, panels, strict=True)):
+        names = [attribute for _, attribute in panel.curves]
+        t, seen, *values = within(
+            stretch, state.t, state.recognised.astype(float), *(state.columns[name] / panel.scale for name in names)
+        )
+        x = 1e3 * (t - origin)
+        for i, ((name, _), value) in enumerate(zip(panel.curves, values, strict=True)):
+            curve = CURVE | ({} if first else DOTS)
+            style = LIMIT if i else curve
+            axes.plot(x, value, label=name, **style)
+        if seen.any() and not first:
+            axes.plot(x[seen > 0.0], values[0][seen > 0.0], "o", color=RED, markersize=6, label="recognised")
+        lowest = np.nanmin(values[0]) if np.isfinite(values[0]).any() else 0.0
+        if lowest >= 0.0:
+            axes.set_ylim(bottom=0.0)
+        label(axes, panel.label)

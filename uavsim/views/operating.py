@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.files import whole, write_json
+from uavsim.onboard.launch import KINDS
 from uavsim.studies.false_alarms import DISTURBANCES
-from uavsim.studies.operating import KINDS, Operating
+from uavsim.studies.operating import Operating
 from uavsim.views.figure import (
     BLACK,
     BLUE,
@@ -45,8 +46,6 @@ Array = NDArray[np.float64]
 
 COLOURS = (BLACK, BLUE, RED, GREEN, ORANGE, PURPLE, SKY, EARTH)
 LINES = ("-", "--", ":")
-UNITS = {"threshold": "m/s²", "acceleration": "m/s²", "cusum.limit": "m/s", "adaptive.limit": "m/s"}
-LEVEL_UNITS = UNITS | {"glr.limit": "m/s² √s"}
 MISSED = (0.5, 0.1, 0.01, 1e-3, 1e-4)  # where the scale of probabilities is labelled
 NONE = 0.3  # alarms, in place of none on a scale of powers of ten
 DELAYS = (2, 5, 10, 20, 50, 100, 200, 500)  # ms
@@ -85,13 +84,13 @@ def _plain(value: Any) -> Any:
 # -- what curves share -----------------------------------------------------------------------------------------------
 
 
-def _style(kind: str) -> dict[str, Any]:
-    i = KINDS.index(kind)
-    return {"color": COLOURS[i % len(COLOURS)], "linestyle": LINES[i // len(COLOURS)]}
+def _style(found: Operating, kind: str) -> dict[str, Any]:
+    i = list(dict.fromkeys([*KINDS, *found.rows["detector"]])).index(kind)
+    return {"color": COLOURS[i % len(COLOURS)], "linestyle": LINES[i // len(COLOURS) % len(LINES)]}
 
 
 def _curves(found: Operating) -> Iterator[tuple[str, "pd.DataFrame"]]:
-    for kind in KINDS:
+    for kind in dict.fromkeys(found.rows["detector"]):
         rows = found.rows[found.rows["detector"] == kind]
         if len(rows):
             yield kind, rows.sort_values("level")
@@ -160,7 +159,7 @@ def draw_detection(found: Operating) -> "Figure":
     panels = [panel for row in axes for panel in row]
     for panel, kind in zip(panels, DISTURBANCES, strict=True):
         for name, rows in _curves(found):
-            style, (x, some) = _style(name), _rate(rows, kind)
+            style, (x, some) = _style(found, name), _rate(rows, kind)
             y = _missed(rows)
             panel.plot(x, y, linewidth=1.2, label=name, **style)
             _points(panel, x, y, some, rows["factor"].to_numpy() == 1.0, style)
@@ -185,7 +184,7 @@ def draw_latency(found: Operating) -> "Figure":
     )
     for panel, column, name in ((middle, "crossing_median", "median"), (late, "crossing_p95", "95 % quantile")):
         for kind, rows in _curves(found):
-            style, (x, some) = _style(kind), _rate(rows, "mix")
+            style, (x, some) = _style(found, kind), _rate(rows, "mix")
             y = 1e3 * rows[column].to_numpy()
             panel.plot(x, y, linewidth=1.2, label=kind, **style)
             _points(panel, x, y, some, rows["factor"].to_numpy() == 1.0, style)
@@ -201,7 +200,7 @@ def draw_latency(found: Operating) -> "Figure":
 
 def draw_levels(found: Operating) -> "Figure":
     """Draw detection probability and false alarms against each detector's level."""
-    curves = list(_curves(found))
+    curves = [curve for curve in _curves(found) if curve[1]["level"].notna().all()]
     height = -(-len(curves) // COLUMNS)
     figure, axes = sheet(
         "Launch detectors: detection probability (black) and false alarms in the mix (red) against the level",
@@ -233,8 +232,8 @@ def _draw_level(axes: "Axes", name: str, rows: "pd.DataFrame") -> None:
     axes.set_xticks([x[0], own, x[-1]], [f"{value:.3g}" for value in (x[0], own, x[-1])])
     axes.axvline(own, color=GREY, linestyle="--", linewidth=1.0)
     axes.set_title(name, fontsize=SMALL, loc="left")
-    unit = LEVEL_UNITS.get(key) or LEVEL_UNITS[key.rpartition(".")[2]]
-    label(axes, None, f"{key}, {unit}")
+    unit = str(rows["unit"].iloc[0])
+    label(axes, None, f"{key}, {unit}" if unit else key)
     right = axes.twinx()
     rate, some = _rate(rows, "mix")
     right.set_yscale("log")

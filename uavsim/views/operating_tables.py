@@ -3,19 +3,13 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from uavsim.studies.operating import COMPARED, Operating, not_better
+from uavsim.onboard.launch import KINDS
+from uavsim.studies.operating import Operating, not_better, rivals
 from uavsim.views.terminal import _console, _print, _table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-SHORT = {
-    "multi-level-window": "paper",
-    "adaptive-cusum": "adaptive",
-    "px4-norm": "px4 norm",
-    "ardupilot": "ardupil",
-    "paparazzi": "paparaz",
-}
 CLASSES = {"vibration": "3 g rms", "soft drops": "soft drops", "centrifuge": "4.1 g"}
 
 
@@ -43,22 +37,27 @@ def _rate(value: float) -> str:
     return f"{value:.2g}" if 0.0 < value < 99.5 else f"{value:.0f}"
 
 
-def print_cells(cells: "pd.DataFrame", own: str, also: Sequence[str] = ("multi-level-window",)) -> None:
+def print_cells(cells: "pd.DataFrame", own: str, also: Sequence[str] = ()) -> None:
     """Print detection probability and median delay in each cell, and where the default is not better."""
     console, there = _console(), set(cells["detector"])
-    names = [own, *(name for name in (*also, *COMPARED) if name in there and name != own)]
+    first = (next(iter(KINDS)), *also, *rivals())  # the published method, and what the user has brought
+    names = [own, *(name for name in dict.fromkeys(first) if name in there and name != own)]
     trials = int(cells["trials"].iloc[0])
     _print(
         console,
         f"of {trials} launches a cell, median delay after 4.5 g, ms, and in brackets how many are lost; +: bump\n",
     )
-    table = _table(("peak, σ", *(SHORT.get(name, name) for name in names)))
+    table = _table(("peak, σ", *(_short(name) for name in names)))
     for (peak, sigma, bump), rows in cells.groupby(["peak_g", "sigma_g", "bump"], sort=False):
         by_name = rows.set_index("detector")
         table.add_row(f"{peak:g} {sigma:g}{' +' if bump else ''}", *(_cell(by_name.T[name]) for name in names))
     _print(console, table, "")
     for line in shortfalls(cells, own):
         _print(console, line)
+
+
+def _short(name: str) -> str:
+    return (KINDS[name].short if name in KINDS else "") or name
 
 
 def _cell(row: "pd.Series[float]") -> str:
@@ -70,7 +69,7 @@ def shortfalls(cells: "pd.DataFrame", own: str) -> list[str]:
     """A line for each rival: in which cells the detector is not better."""
     there, lines = set(cells["detector"]), []
     found = list(not_better(cells, own))
-    for rival in (name for name in COMPARED if name in there and name != own):
+    for rival in (name for name in rivals() if name in there and name != own):
         places = [
             f"{s.cell[0]:g} g at σ {s.cell[1]:g} g{' with a bump' if s.cell[2] else ''} ({s.by})"
             for s in found

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from uavsim.onboard.launch.settings import DetectorSettings, reference
+from uavsim.onboard.launch.settings import DetectorSettings, if_known
 from uavsim.settings import read
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.curves import thin
@@ -74,7 +74,7 @@ def draw(flight: "Flight") -> "Figure":
     whole = float(t[0]), float(t[-1])
     stretches: tuple[Stretch, Stretch] = (whole, (max(centre - BEFORE, whole[0]), min(centre + AFTER, whole[1])))
     detector = read(DetectorSettings, flight.scenario["detector"])
-    windows = detector.kind.endswith("window")
+    windows = if_known(detector).window is not None
     heights = HEIGHTS if windows else HEIGHTS[:-1]
     figure, axes = sheet(flight.scenario["name"], _words(flight), heights, WIDTHS, size=(11.5, 7.0))
     columns = list(zip(*axes, strict=True))
@@ -115,14 +115,9 @@ def _force(column: "Sequence[Axes]", flight: "Flight", stretch: Stretch, detecto
 
 
 def _levels(detector: DetectorSettings) -> dict[str, float]:
-    """Level that the force is held against, m/s², by its name; none of the rules that have their own."""
-    kind = detector.kind
-    if kind == "adaptive-cusum":
-        return {"reference": reference(detector.threshold, detector.adaptive.reference)}
-    group = next((getattr(detector, name) for name in ("cusum", "glr") if kind.startswith(name)), None)
-    if group is not None:
-        return {"reference": group.reference}
-    return {"threshold": detector.threshold} if kind.endswith(("window", "threshold")) else {}
+    """Levels that the detector's kind draws across the force, m/s², by their names."""
+    lines = if_known(detector).lines
+    return {} if lines is None else dict(lines(detector))
 
 
 def _windows(axes: "Axes", flight: "Flight", stretch: Stretch) -> None:

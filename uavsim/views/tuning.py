@@ -6,7 +6,7 @@ from typing import Any
 import tomli_w
 
 from uavsim.files import without_none, write_json, write_text, write_toml
-from uavsim.studies.operating import level_key
+from uavsim.studies.operating import level_of
 from uavsim.studies.tuning import OTHERS, Score, Tuned, plain
 from uavsim.views.terminal import _console, _print, _table
 
@@ -72,7 +72,9 @@ def print_tuned(found: Tuned) -> None:
     kept = "is kept" if found.within else "is not shown to be kept"
     _print(console, f"budget of {found.budget:g} false alarms an hour: {kept} on the fresh seed")
     if found.tuned.launches["detected"] == 0:
-        _print(console, f"no launch is detected: {level_key(found.before.kind)} within the budget is too high for them")
+        level = level_of(found.before)
+        assert level is not None  # or it could not have been tuned
+        _print(console, f"no launch is detected: {level.key} within the budget is too high for them")
     _print(console, "", lines(found))
 
 

@@ -33,8 +33,9 @@ from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed.energy import GATE, SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
-from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
+from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
+from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.one_pass import OnePassFilter
 from uavsim.onboard.airspeed.push import Push
 from uavsim.onboard.airspeed.readmission import longest_row
@@ -44,6 +45,7 @@ from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
+from uavsim.onboard.interface import Estimate, Estimator, Feel, TareWindow
 from uavsim.onboard.plausible import (
     FASTEST,
     LEAST_PRESSURE,
@@ -78,7 +80,8 @@ ANYWHERE, AROUND = 3e4, 1e3  # Pa; what the static pressure may be off by before
 Row = tuple[float, float, float, float, float, float]
 
 
-class AidedFilter:
+@one_of_ours("aided")
+class AidedFilter(Estimator):
     """The aided estimator, stepped with each reading of the head and of the accelerometer.
 
     Parameters
@@ -104,7 +107,6 @@ class AidedFilter:
         What was flagged and taken back: time, s, event, channel and kind; the flight computer takes them out.
     """
 
-    aided = True
     core: type[EnergyFilter] = OnePassFilter
     __slots__ = (
         "_apart", "_density", "_either", "_fastest", "_flight_force", "_folded", "_force", "_gained", "_gas", "_ground",

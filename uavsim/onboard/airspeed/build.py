@@ -1,12 +1,12 @@
 """Makes the estimator that settings name."""
 
-from uavsim.onboard.airspeed.aided import AidedFilter
-from uavsim.onboard.airspeed.constant_velocity import ConstantVelocity
-from uavsim.onboard.airspeed.interface import Estimator, NoiseModel, TareWindow
-from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
+from uavsim.onboard.airspeed.guarded import GuardedEstimator
+from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.kinds import KINDS
 from uavsim.onboard.airspeed.paper import PaperFilter
 from uavsim.onboard.airspeed.settings import EstimatorSettings
-from uavsim.onboard.airspeed.through_filterpy import FilterpyFilter
+from uavsim.onboard.failure import built
+from uavsim.onboard.interface import Estimator, TareWindow
 
 
 def build(settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> Estimator:
@@ -24,11 +24,21 @@ def build(settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindo
     Returns
     -------
     Estimator
-        Of the kind that the settings name.
+        Of the kind that the settings name; one that is not ours is guarded (`guarded`).
+
+    Raises
+    ------
+    ValueError
+        If nobody has registered the kind.
     """
-    if settings.kind == "paper-filterpy":
-        return FilterpyFilter(settings, noise, tare_window)
-    if settings.kind == "aided":
-        return AidedFilter(settings, noise, tare_window)
-    kinds = {"paper": PaperFilter, "constant-velocity": ConstantVelocity, "jump-adaptive": JumpAdaptive}
-    return kinds[settings.kind](settings, noise, tare_window)
+    if settings.kind not in KINDS:
+        raise ValueError(f"estimator {settings.kind!r} is not registered; there are {', '.join(KINDS)}")
+    kind = KINDS[settings.kind]
+    if kind.ours:
+        made = kind.build(settings, noise, tare_window)
+        assert isinstance(made, Estimator)
+        return made
+    with built(f"estimator {kind.name!r}"):
+        return GuardedEstimator(
+            kind.name, kind.build(settings, noise, tare_window), PaperFilter(settings, noise, tare_window)
+        )

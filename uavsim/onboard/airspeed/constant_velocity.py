@@ -13,6 +13,7 @@ so q follows from the pressure's gain α, the same setting as for the random wal
 from math import inf, nan, sqrt
 
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.paper import PaperFilter
 from uavsim.onboard.airspeed.random_walk import Channel
 from uavsim.onboard.airspeed.settings import EstimatorSettings
@@ -68,6 +69,7 @@ class RampChannel:
         self.variance = alpha * self._r
 
 
+@one_of_ours("constant-velocity")
 class ConstantVelocity(PaperFilter):
     """The two pressures filtered so, then the root; everything else as in `PaperFilter`."""
 

@@ -1,58 +1,14 @@
-"""What every airspeed estimator takes, gives and believes of its sensors.
+"""What an airspeed estimator may believe of its sensors; what it takes and gives is in `uavsim.onboard.interface`.
 
-A reading of the head is (t, p_total, p_static, temperature, t_total, t_static): Pa and K, the time of the reading and
-the ends of the two conversions that it carries, s. A reading of specific force is (t, f_x, f_y, f_z), m/s², body axes.
-An estimator that goes by the pressures alone takes readings of specific force, too, and leaves them aside, so that one
-flight computer serves all kinds.
-
-Whatever the readings, a step returns. A value outside the bounds of `uavsim.onboard.plausible` is a missing one, and no
-estimate outside them is valid; which readings are left out for their time stamps is said in `uavsim.onboard.stamps`.
+Whatever the readings, a step of ours returns. A value outside the bounds of `uavsim.onboard.plausible` is a missing
+one, and no estimate outside them is valid; which readings are left out for their time stamps is said in
+`uavsim.onboard.stamps`.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Protocol
+from typing import Annotated
 
 from annotated_types import Ge, Interval
-
-Estimate = tuple[float, float, float, float, float, float, bool, float, float]
-"""t s, airspeed, airspeed_sd, airspeed_raw m/s, p_total (tared), p_static Pa, valid, nis_total, nis_static."""
-Feel = Callable[[float, float, float, float], None]
-"""Takes a reading of specific force: t, f_x, f_y, f_z."""
-TareWindow = tuple[float, float]
-"""Readings with start < t ≤ end, s, are under the cover."""
-
-
-class Estimator(Protocol):
-    """What the flight computer asks of an airspeed estimator."""
-
-    @property
-    def aided(self) -> bool:
-        """Whether it wants the readings of specific force."""
-
-    def step(
-        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
-    ) -> Estimate | None:
-        """Take one reading of the head and say what is known after it; None if it is left out for its stamp."""
-
-    @property
-    def accelerometer(self) -> Feel:
-        """What takes a reading of specific force at present, in the order of the time stamps with those of the head.
-
-        A method does. What it was before a launch was recognised serves afterwards, too, if more slowly.
-        """
-
-    def tidy(self) -> None:
-        """Do what can wait until the estimate has been told; without it, it is done at the next reading of the head."""
-
-    def launched(self, t: float) -> None:
-        """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
-
-    def rearmed(self, t: float) -> None:
-        """Be told that it was none and that the aircraft sits on its rail again."""
-
-    def unfolding(self, t: float) -> None:
-        """Be told that the wings have been commanded out at `t`, s: masses that move push the accelerometer about."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ deviation a sample (Moustakides 1986); h sets how rarely noise alone opens the f
 from math import inf, nan, sqrt
 
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.paper import PaperFilter
 from uavsim.onboard.airspeed.random_walk import Channel
 from uavsim.onboard.airspeed.settings import EstimatorSettings
@@ -64,6 +65,7 @@ class JumpChannel:
         self.variance = gain * self._r
 
 
+@one_of_ours("jump-adaptive")
 class JumpAdaptive(PaperFilter):
     """The two pressures filtered so, then the root; everything else as in `PaperFilter`."""
 

@@ -33,10 +33,12 @@ from collections.abc import Callable
 from math import inf, isnan, nan, sqrt
 
 from uavsim import airdata
-from uavsim.onboard.airspeed.interface import Estimate, NoiseModel
+from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.random_walk import Channel, RandomWalk, process_noise
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.tare import Tare
+from uavsim.onboard.interface import Estimate, Estimator
 from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.stamps import Conversions, Stamps, jump
 
@@ -44,7 +46,8 @@ FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the cli
 VALID = 2.0  # V*; from here on the airspeed is called valid
 
 
-class PaperFilter:
+@one_of_ours("paper")
+class PaperFilter(Estimator):
     """The published estimator, stepped with each reading of the head.
 
     Parameters
@@ -65,7 +68,6 @@ class PaperFilter:
     `EstimatorSettings.fastest` is not valid.
     """
 
-    aided = False
     __slots__ = (
         "_compressible",
         "_cover",
@@ -251,18 +253,3 @@ class PaperFilter:
     def tare(self) -> tuple[float, float]:
         """Return the pair's tare, Pa, and its variance, Pa², by now."""
         return (self._tare, self._tare_variance) if self._taring is None else self._taring.result()
-
-    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
-        """Leave a reading of specific force aside: the pressures alone count."""
-
-    def tidy(self) -> None:
-        """Nothing waits."""
-
-    def launched(self, t: float) -> None:
-        """Need not know of a launch."""
-
-    def rearmed(self, t: float) -> None:
-        """Need not know that it was none."""
-
-    def unfolding(self, t: float) -> None:
-        """Need not know of the wings."""

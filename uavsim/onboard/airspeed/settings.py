@@ -1,7 +1,7 @@
 """Which airspeed estimator is flown, and its settings."""
 
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, Any
 
 from annotated_types import Interval
 
@@ -76,6 +76,7 @@ class EstimatorSettings:
     kind : str
         "paper", the published method; "paper-filterpy", the same through the filterpy package; "constant-velocity" and
         "jump-adaptive", other filters of the two pressures; "aided", which takes in the accelerometer.
+        Others come from packages, from `--plugin` or from Python.
     model : str
         Relation of pressures and airspeed, "compressible" or "bernoulli"; the aided filter has the first only.
     gain_total, gain_static : float
@@ -95,9 +96,11 @@ class EstimatorSettings:
         airspeed that its flight computer holds, on a rig that of sound.
     aided : group
         Of the aided filter.
+    options : group
+        Settings of an estimator that is not one of ours, as that has them.
     """
 
-    kind: Literal["paper", "paper-filterpy", "constant-velocity", "jump-adaptive", "aided"] = "aided"
+    kind: str = "aided"
     model: airdata.Model = "compressible"
     gain_total: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.8
     gain_static: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.3
@@ -108,3 +111,4 @@ class EstimatorSettings:
     calibration: Annotated[float, Interval(gt=0.0, le=10.0)] = 1.0
     fastest: Annotated[float, Interval(gt=0.0, le=FASTEST)] | None = None
     aided: AidedSettings = field(default_factory=AidedSettings)
+    options: dict[str, Any] | None = field(default=None, hash=False)

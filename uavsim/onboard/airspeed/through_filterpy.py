@@ -6,11 +6,13 @@ from typing import Any
 import numpy as np
 
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.paper import PaperFilter
 from uavsim.onboard.airspeed.random_walk import Channel, process_noise
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 
 
+@one_of_ours("paper-filterpy")
 class FilterpyFilter(PaperFilter):
     """The same estimator with the Kalman filter of the filterpy package, two states and one reading at a time.
 

@@ -21,11 +21,58 @@ sample (NaN, a shock) raises the limit. m follows at a bounded rate, so that a s
 project's, tuned on other seeds than those it is judged on.
 """
 
+from dataclasses import asdict, dataclass
 from math import inf, isfinite
+from typing import TYPE_CHECKING, Annotated, Any
+
+from annotated_types import Interval
 
 from uavsim.onboard.launch.axis import GRAVITY, OneAxis
+from uavsim.onboard.launch.bounds import Force, Time
+from uavsim.onboard.launch.compiled import Counts, Forces, Loop, Numbers, Reals, Wholes, compiled, wide
 from uavsim.onboard.launch.detector import GAP_PERIODS, ROUNDING, Axis, require
+from uavsim.onboard.launch.kinds import REFERENCES, WIDELY, Level, Need, Panel, Second, one_axis
 from uavsim.onboard.plausible import MOST_FORCE
+
+if TYPE_CHECKING:
+    from uavsim.onboard.launch.settings import DetectorSettings
+
+G_MS = 1e-3 * GRAVITY  # m/s in 1 g·ms
+BELOW = 0.1 * GRAVITY  # m/s², of a threshold that samples exceed: where the sum begins to grow instead
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptiveCusumSettings:
+    """Clipped cumulative sum whose limit follows the roughness, `kind = "adaptive-cusum"`.
+
+    Attributes
+    ----------
+    reference : float, optional
+        c, m/s². None: the detector's threshold less 0.1 g, by default 4.5 g.
+    rise : float
+        Most that a sample adds, m/s².
+    fall : float
+        Most that a sample takes off, m/s².
+    limit : float
+        Least limit, m/s; over the rise it is the time that a launch takes. 0.08826 is 9 g·ms.
+    highest : float
+        Highest limit, m/s, not below the least. 0.1569 is 16 g·ms.
+    gain : float
+        Limit over roughness, s.
+    mean : float
+        Time constant of the short mean, s.
+    memory : float
+        Time constant of the roughness, s; at least three periods of the accelerometer are taken.
+    """
+
+    reference: Force | None = None
+    rise: Force = 9.80665
+    fall: Force = 14.71
+    limit: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.08826
+    highest: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.1569
+    gain: Time = 0.015
+    mean: Time = 0.002
+    memory: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.2
 
 
 class AdaptiveCusum(OneAxis):
@@ -160,3 +207,86 @@ class AdaptiveCusum(OneAxis):
             self._mean += step
         else:
             self._mean -= step
+
+    def loop(self) -> Loop:
+        """Return the same rule over arrays."""
+        numbers = self._reference, self._rise, self._fall, self._least, self._highest, self._gain, self._most
+        times = self._follow, self._forget, self._period
+        return Loop(_loop, numbers + times, x=(0.0, 0.5 * self._most, 0.0))
+
+
+@compiled
+def _loop(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
+    """`AdaptiveCusum`: p as it is built, and the period; x sum, roughness, mean."""
+    reference, rise, fall, least, highest, gain, most, follow, forget, period = p
+    total, rough, mean = x[0], x[1], x[2]
+    first, alarms, then = y[0], 0, (k0 - 1) / rate
+    for i in range(f.size):
+        v, t = wide(f[i]), (k0 + i) / rate
+        dt = t - then if k0 + i != first else period
+        then = t
+        away, weight, size = v - mean, dt * follow, most
+        if abs(away) <= most:
+            mean += away * weight if weight < 1.0 else away
+            size = abs(away)  # without a branch that noise would make unpredictable
+        elif -MOST_FORCE < v < MOST_FORCE:
+            mean += (most if away > 0.0 else -most) * min(1.0, weight)
+        rough += (size - rough) * (dt * forget)
+        excess: float = v - reference
+        if total == 0.0 and not excess > 0.0:
+            continue
+        if excess > rise:
+            excess = rise if v < MOST_FORCE else fall
+        elif not excess > fall:  # NaN too
+            excess = fall
+        total += excess * dt
+        if not total > 0.0:
+            total = 0.0
+        elif total > least and total > min(max(gain * rough, least), highest):
+            total, rough, mean, first = 0.0, 0.5 * most, 0.0, k0 + i + 1
+            out[alarms] = k0 + i
+            alarms += 1
+            if alarms == out.size:
+                break
+    x[0], x[1], x[2], y[0] = total, rough, mean, first
+    return alarms
+
+
+def reference(settings: "DetectorSettings") -> float:
+    """Where the sum begins to grow, m/s²: its own setting, else as far below the threshold as `BELOW`."""
+    own = settings.adaptive.reference
+    return settings.threshold - BELOW if own is None else own
+
+
+def _arguments(settings: "DetectorSettings") -> dict[str, Any]:
+    return asdict(settings.adaptive) | {"reference": reference(settings)}
+
+
+def _need(settings: "DetectorSettings", _: float) -> Need:
+    own, time = settings.adaptive.reference, settings.adaptive.limit / settings.adaptive.rise
+    if own is None:
+        return Need("threshold", settings.threshold, "adaptive.limit", time)
+    return Need("adaptive.reference", own, "adaptive.limit", time)
+
+
+def _second(settings: "DetectorSettings") -> Second:
+    """The threshold has no part in it where the reference is set."""
+    return Second("threshold" if settings.adaptive.reference is None else "adaptive.reference", REFERENCES, True)
+
+
+one_axis(
+    "adaptive-cusum",
+    AdaptiveCusum,
+    group="adaptive",
+    reads=("threshold",),
+    arguments=_arguments,
+    level=Level("adaptive.limit", "m/s", WIDELY, ("adaptive.highest", "adaptive.gain")),
+    second=_second,
+    need=_need,
+    lines=lambda settings: {"c": reference(settings)},
+    panels=(
+        Panel("S, g·ms", (("sum S", "sum"), ("limit h", "limit")), G_MS),
+        Panel("r, g", (("roughness r of $f_x$", "roughness"),), GRAVITY, 0.8),
+    ),
+    short="adaptive",
+)

@@ -5,6 +5,7 @@ nominal periods; the sample after it stands for no more than those, and so does 
 taken a step (`uavsim.onboard.stamps`, where it is said which samples are left out for their times).
 """
 
+from fractions import Fraction
 from math import inf, isfinite, nan
 from typing import get_args
 
@@ -136,3 +137,10 @@ def whole(seconds: float, rate: float, name: str) -> int:
     """Samples in a time, at least 1."""
     require(0.0 < seconds < inf, f"{name} must be above 0 s")
     return max(1, round(seconds * rate))
+
+
+def least(ratio: float, samples: int) -> int:
+    """Least whole count that is at least the share of the samples; 0.8 of 10 is 8."""
+    require(0.0 < ratio <= 1.0, "ratio must be above 0 and at most 1")
+    share = Fraction(ratio).limit_denominator()
+    return -(-share.numerator * samples // share.denominator)

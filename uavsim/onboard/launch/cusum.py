@@ -9,11 +9,42 @@ above a threshold it keeps by how much a sample exceeds. Source: Page, Biometrik
 way to bound the influence of one sample.
 """
 
+from dataclasses import dataclass
 from math import isfinite
+from typing import Annotated
+
+from annotated_types import Interval
 
 from uavsim.onboard.launch.axis import GRAVITY, OneAxis
+from uavsim.onboard.launch.bounds import Force
+from uavsim.onboard.launch.compiled import Counts, Forces, Loop, Numbers, Reals, Wholes, compiled, wide
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+from uavsim.onboard.launch.kinds import REFERENCES, WIDELY, Level, Need, Panel, Second, one_axis
 from uavsim.onboard.plausible import MOST_FORCE
+
+G_MS = 1e-3 * GRAVITY  # m/s in 1 g·ms
+
+
+@dataclass(frozen=True, slots=True)
+class CusumSettings:
+    """Clipped cumulative sum, `kind = "cusum"`.
+
+    Attributes
+    ----------
+    reference : float
+        c, m/s². 44.13 is 4.5 g.
+    limit : float
+        h, m/s. 0.1373 is 14 g·ms.
+    rise : float
+        Most that a sample adds, m/s².
+    fall : float
+        Most that a sample takes off, m/s².
+    """
+
+    reference: Force = 44.13
+    limit: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.1373
+    rise: Force = 9.80665
+    fall: Force = 19.6133
 
 
 class Cusum(OneAxis):
@@ -77,6 +108,11 @@ class Cusum(OneAxis):
         self._limit = limit * ROUNDING  # a sum that equals the limit must not pass it by rounding of the times
         super().__init__(rate, axis)
 
+    @property
+    def limit(self) -> float:
+        """What the sum is held against, m/s."""
+        return self._limit
+
     def _clear(self) -> None:
         self.sum = 0.0
 
@@ -94,3 +130,47 @@ class Cusum(OneAxis):
         self.sum = 0.0
         self.triggered = False
         return False
+
+    def loop(self) -> Loop:
+        """Return the same rule over arrays."""
+        return Loop(_loop, (self._reference, self._rise, self._fall, self._limit, self._period))
+
+
+@compiled
+def _loop(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
+    """`Cusum`: p reference, rise, -fall, limit, period; x the sum, never below 0."""
+    reference, rise, fall, limit, period = p
+    total, first, alarms = x[0], y[0], 0
+    for i in range(f.size):
+        v = wide(f[i])
+        excess: float = v - reference
+        if total == 0.0 and not excess > 0.0:
+            continue
+        if excess > rise:
+            excess = rise if v < MOST_FORCE else fall
+        elif not excess > fall:  # NaN too
+            excess = fall
+        k = k0 + i
+        total += excess * (k / rate - (k - 1) / rate if k != first else period)
+        if not total > 0.0:
+            total = 0.0
+        elif total > limit:
+            total, first = 0.0, k + 1
+            out[alarms] = k
+            alarms += 1
+            if alarms == out.size:
+                break
+    x[0], y[0] = total, first
+    return alarms
+
+
+one_axis(
+    "cusum",
+    Cusum,
+    group="cusum",
+    level=Level("cusum.limit", "m/s", WIDELY),
+    second=Second("cusum.reference", REFERENCES, over_push=True),
+    need=lambda s, _: Need("cusum.reference", s.cusum.reference, "cusum.limit", s.cusum.limit / s.cusum.rise),
+    lines=lambda s: {"c": s.cusum.reference},
+    panels=(Panel("S, g·ms", (("sum S", "sum"), ("limit h", "limit")), G_MS),),
+)

@@ -13,13 +13,46 @@ One running sum serves all windows: a window's is what it has grown by since tha
 steps of 2⁻²⁰ m/s², so that nothing is rounded however long it runs; 64 bits last for years.
 """
 
+from dataclasses import dataclass
 from math import isfinite, sqrt
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Interval, MinLen
 
 from uavsim.onboard.launch.axis import GRAVITY, Counting, whole
+from uavsim.onboard.launch.bounds import Force, Time
+from uavsim.onboard.launch.compiled import Forces, Loop, Numbers, Reals, Wholes, compiled, wide
 from uavsim.onboard.launch.detector import Axis, require
+from uavsim.onboard.launch.kinds import REFERENCES, WIDELY, Level, Need, Second, one_axis
 from uavsim.onboard.plausible import MOST_FORCE
 
 SCALE = 2.0**20  # steps in 1 m/s²
+
+
+@dataclass(frozen=True, slots=True)
+class GlrSettings:
+    """Bank of clipped likelihood ratios, `kind = "glr-bank"`.
+
+    Attributes
+    ----------
+    reference : float
+        c, m/s². 44.13 is 4.5 g.
+    limit : float
+        h, m/s² √s. 1.0854 is 3.5 g √ms.
+    rise : float
+        Most that a sample adds, m/s².
+    fall : float
+        Most that a sample takes off, m/s².
+    windows : tuple of float
+        Lengths of the windows, s.
+    """
+
+    reference: Force = 44.13
+    limit: Annotated[float, Interval(gt=0.0, le=100.0)] = 1.0854
+    rise: Force = 9.80665
+    fall: Force = 9.80665
+    windows: Annotated[tuple[Time, ...], MinLen(1)] = (0.006, 0.012, 0.024, 0.048, 0.096)
 
 
 class GlrBank(Counting):
@@ -108,3 +141,64 @@ class GlrBank(Counting):
         k += 1
         self._k = 0 if k == self._longest_window else k
         return reached
+
+    def loop(self) -> Loop:
+        """Return the same rule over arrays."""
+        lengths, limits = [n for n, _ in self._windows], [limit for _, limit in self._windows]
+        q = np.array([len(lengths), *lengths, *limits], np.int64)
+        state = (0, 0, lengths[-1], *(0,) * (len(lengths) + lengths[-1]))
+        return Loop(_loop, (self._reference, self._fall, self._span, SCALE), q, y=state)
+
+
+@compiled
+def _loop(f: Forces, k0: int, rate: float, p: Numbers, q: Wholes, x: Reals, y: Wholes, out: Wholes) -> int:
+    """`GlrBank`: p reference, fall, rise + fall, steps in 1 m/s²; q the number, lengths and limits of the windows.
+
+    y[1] place in the ring, y[2] samples since the last that spoke, then the windows' sums, then the ring.
+    """
+    reference, fall, span, scale = p
+    windows = q[0]
+    lengths, limits = q[1 : 1 + windows], q[1 + windows :]
+    longest = lengths[windows - 1]
+    place, quiet, alarms = y[1], y[2], 0
+    sums, ring = y[3 : 3 + windows], y[3 + windows :]
+    for i in range(f.size):
+        v = wide(f[i])
+        above = v - reference + fall
+        added = 0
+        if not (above > 0.0 and v < MOST_FORCE):  # NaN too
+            if quiet >= longest:
+                continue
+            quiet += 1
+        else:
+            added = int(scale * (above if above < span else span))
+            quiet = 0
+        reached = False
+        for j in range(windows):
+            old = place - lengths[j]
+            sums[j] += added - ring[old if old >= 0 else old + longest]
+            reached |= sums[j] > limits[j]
+        ring[place] = added
+        place += 1
+        if place == longest:
+            place = 0
+        if reached:
+            place, quiet = 0, longest
+            y[3:] = 0
+            out[alarms] = k0 + i
+            alarms += 1
+            if alarms == out.size:
+                break
+    y[1], y[2] = place, quiet
+    return alarms
+
+
+one_axis(
+    "glr-bank",
+    GlrBank,
+    group="glr",
+    level=Level("glr.limit", "m/s² √s", WIDELY),
+    second=Second("glr.reference", REFERENCES, over_push=True),
+    need=lambda s, _: Need("glr.reference", s.glr.reference, "glr.windows", min(s.glr.windows)),
+    lines=lambda s: {"c": s.glr.reference},
+)

@@ -10,7 +10,10 @@ window", which the published method names.
 from math import inf, isfinite
 
 from uavsim.onboard.launch.axis import OneAxis
+from uavsim.onboard.launch.compiled import Counts, Forces, Loop, Numbers, Reals, Wholes, compiled, wide
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+from uavsim.onboard.launch.kinds import WINDOWS, Level, Panel, Second, one_axis
+from uavsim.onboard.launch.levels import above, above_trigger, line, lines_of
 from uavsim.onboard.plausible import MOST_FORCE
 
 
@@ -84,6 +87,15 @@ class DoubleThreshold(OneAxis):
             return False
         return self.held >= self._window
 
+    @property
+    def window(self) -> float:
+        """Time to be held, s."""
+        return self._window
+
+    def loop(self) -> Loop:
+        """Return the same rule over arrays."""
+        return Loop(_loop, (self._trigger, self._threshold, self._window, self._period), y=(0, 0))
+
 
 class SingleThreshold(DoubleThreshold):
     """Recognise a launch by a force that stays above one level.
@@ -98,3 +110,53 @@ class SingleThreshold(DoubleThreshold):
 
     def __init__(self, rate: float, *, threshold: float, window: float, axis: Axis = "+x") -> None:
         super().__init__(rate, threshold=threshold, window=window, axis=axis)
+
+
+@compiled
+def _loop(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
+    """`SingleThreshold`, `DoubleThreshold`: p trigger, threshold, window, period; x held; y[1] whether held."""
+    trigger, threshold, window, period = p
+    held, holding, alarms = x[0], y[1] != 0, 0
+    for i in range(f.size):
+        v = wide(f[i])
+        if not holding:
+            if not trigger < v < MOST_FORCE:
+                continue
+            holding, held = True, period
+        elif threshold < v < MOST_FORCE:
+            held += (k0 + i) / rate - (k0 + i - 1) / rate
+        else:
+            holding, held = False, 0.0
+            continue
+        if held >= window:
+            holding, held = False, 0.0
+            out[alarms] = k0 + i
+            alarms += 1
+            if alarms == out.size:
+                break
+    x[0], y[1] = held, holding
+    return alarms
+
+
+HELD = Panel("held, ms", (("time held", "held"), ("time to be held", "window")), 1e-3)
+
+one_axis(
+    "single-threshold",
+    SingleThreshold,
+    reads=("threshold", "window"),
+    level=Level("threshold"),
+    second=Second("window", WINDOWS),
+    need=above,
+    lines=line,
+    panels=(HELD,),
+)
+one_axis(
+    "double-threshold",
+    DoubleThreshold,
+    reads=("threshold", "trigger", "window"),
+    level=Level("threshold", beside=("trigger",)),
+    second=Second("window", WINDOWS),
+    need=above_trigger,
+    lines=lines_of,
+    panels=(HELD,),
+)

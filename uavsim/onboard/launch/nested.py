@@ -18,11 +18,17 @@ unless others follow; a launch must stay above G2 for longer than that.
 
 from fractions import Fraction
 from math import inf, isfinite
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
+from uavsim.onboard.launch.compiled import Counts, Forces, Loop, Numbers, Reals, Wholes, compiled, wide
 from uavsim.onboard.launch.detector import Axis, periods, require
+from uavsim.onboard.launch.kinds import KINDS, WINDOWS, Kind, Level, Second, Window
+from uavsim.onboard.launch.levels import above_trigger, lines_of
 from uavsim.onboard.plausible import MOST_FORCE
 from uavsim.onboard.stamps import Stamps, jump
+
+if TYPE_CHECKING:
+    from uavsim.onboard.launch.settings import DetectorSettings
 
 
 class MultiLevelWindow:
@@ -170,6 +176,13 @@ class MultiLevelWindow:
             return False
         return self._advance(t, (fx, fy, fz))
 
+    def loop(self) -> Loop:
+        """Return the same rule over arrays."""
+        one, axes = self._counters[0], len(self._counters)
+        q = one._samples, one._levels, one._needed, one._of, int(one._rearm)
+        rule = _loop if axes == 1 else _loop_of_axes
+        return Loop(rule, (one._trigger, one._threshold), q, y=(0,) * (1 + 4 * axes))
+
     def _inside(self, fx: float, fy: float, fz: float) -> bool:
         (y, z), (lower_x, lower_y, lower_z) = self._upper_yz, self._lower
         return fx >= lower_x and lower_y <= fy <= y and lower_z <= fz <= z
@@ -288,3 +301,103 @@ def _largest(force: tuple[float, float, float]) -> float:
         if largest < abs(f) < MOST_FORCE:
             largest = abs(f)
     return largest
+
+
+@compiled
+def _loop(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
+    """`MultiLevelWindow` on one axis: p trigger, threshold; q n, i, k₁ as a fraction, rearm; y open, level, N, total.
+
+    Counts samples and knows no time. y[1] is 2 where the axis is dead.
+    """
+    trigger, threshold = p
+    samples, levels, needed, of, rearm = q
+    opened, level, count, total, alarms = y[1], y[2], y[3], y[4], 0
+    for i in range(f.size):
+        v = wide(f[i])
+        if opened != 1:
+            if opened == 2 or not trigger < v < MOST_FORCE:
+                continue
+            opened, level, count, total = 1, 1, 1, 1
+        else:
+            if total == level * samples:
+                level += 1
+            total += 1
+            count += threshold < v < MOST_FORCE
+        if total < level * samples:
+            continue
+        if count * of >= needed * total:
+            opened = 0
+            out[alarms] = k0 + i
+            alarms += 1
+            if alarms == out.size:
+                break
+        elif level == levels:
+            opened = 0 if rearm else 2
+    y[1], y[2], y[3], y[4] = opened, level, count, total
+    return alarms
+
+
+@compiled
+def _loop_of_axes(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
+    """`MultiLevelWindow` on several axes, f (axes, n): as the other, with four numbers of state an axis."""
+    trigger, threshold = p
+    samples, levels, needed, of, rearm = q
+    axes, alarms = f.shape[0], 0
+    for i in range(f.shape[1]):
+        recognised = False
+        for axis in range(axes):
+            v = wide(f[axis, i])
+            at = 1 + 4 * axis
+            if y[at] != 1:
+                if y[at] == 2 or not trigger < v < MOST_FORCE:
+                    continue
+                y[at : at + 4] = 1
+            else:
+                if y[at + 3] == y[at + 1] * samples:
+                    y[at + 1] += 1
+                y[at + 3] += 1
+                y[at + 2] += threshold < v < MOST_FORCE
+            if y[at + 3] < y[at + 1] * samples:
+                continue
+            if y[at + 2] * of >= needed * y[at + 3]:
+                recognised = True
+            elif y[at + 1] == levels:
+                y[at] = 0 if rearm else 2
+        if recognised:
+            y[1:] = 0
+            out[alarms] = k0 + i
+            alarms += 1
+            if alarms == out.size:
+                break
+    return alarms
+
+
+def _build(settings: "DetectorSettings", rate: float) -> MultiLevelWindow:
+    return MultiLevelWindow(
+        trigger=settings.threshold if settings.trigger is None else settings.trigger,
+        threshold=settings.threshold,
+        samples=max(1, round(settings.window * rate)),
+        levels=settings.levels,
+        ratio=settings.ratio,
+        axes=settings.axes,
+        rearm=settings.rearm,
+        period=1.0 / rate,
+    )
+
+
+KINDS.add(
+    Kind(
+        "multi-level-window",
+        MultiLevelWindow,
+        _build,
+        reads=("threshold", "trigger", "window", "levels", "ratio", "rearm"),
+        level=Level("threshold", beside=("trigger",)),
+        second=Second("window", WINDOWS),
+        need=above_trigger,
+        lines=lines_of,
+        window=lambda settings: Window(settings.levels, settings.ratio),
+        many_axes=True,
+        short="paper",
+        ours=True,
+    )
+)

@@ -4,9 +4,9 @@ What is kept is read again as a pickle, and whoever writes a pickle says what is
 nobody can write into it but the user, root, and, beside the module, those who can write the module itself. A folder
 that everybody may write is never used. The first that serves is taken:
 
-    NUMBA_CACHE_DIR/studies_…                  if that is set
+    NUMBA_CACHE_DIR/launch_…                   if that is set
     __pycache__                                beside the module
-    uavsim/compiled/studies_…                  in the user's cache, made for the user alone
+    uavsim/compiled/launch_…                   in the user's cache, made for the user alone
 
 Every file begins with the SHA-256 of what follows, an index with numba's version before it. A file that is cut,
 damaged, unreadable or of another version counts as none: the loop is compiled anew. That a file cannot be written is no
@@ -24,6 +24,7 @@ import tempfile
 from contextlib import suppress
 from typing import Any
 
+from numba import njit
 from numba.core import caching
 from numba.misc.appdirs import AppDirs
 
@@ -171,3 +172,11 @@ class Kept(caching.FunctionCache):
         """Keep what was compiled, if that can be."""
         with suppress(Exception):  # a full disk, a folder that has gone: compiled anew next time
             super().save_overload(sig, data)
+
+
+def compile_function(function: Any) -> Any:
+    """Return what compiles a function at its first call, without the interpreter's lock, and keeps the machine code."""
+    made: Any = njit(nogil=True, error_model="numpy")(function)
+    with suppress(RuntimeError, OSError, AttributeError, TypeError):  # nowhere to keep it, or another numba's insides
+        made._cache = Kept(function)
+    return made

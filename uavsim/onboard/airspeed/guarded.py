@@ -1,0 +1,122 @@
+"""Airspeed estimators that are not ours: their answers are made whole, and what is no answer ends the flight.
+
+An answer is a whole `Estimate`, or (airspeed, sd, valid), or None. A valid airspeed is a number from 0 on, and so is
+its standard deviation; without `valid` both may be NaN. The raw airspeed is never theirs: it is that of the tared
+readings, whatever an estimator makes of them.
+"""
+
+from math import isfinite, nan
+from typing import Any
+
+from uavsim.onboard.airspeed.paper import PaperFilter
+from uavsim.onboard.failure import OnboardError, raised, shown
+from uavsim.onboard.interface import Estimate, Estimator, Feel, News
+
+WHOLE = 9  # values of a whole estimate
+
+
+class GuardedEstimator(Estimator):
+    """An airspeed estimator of somebody else's, whose answers are made whole.
+
+    Parameters
+    ----------
+    name : str
+        As registered.
+    estimator : object
+        With `step`, and what it has of the other methods of `Estimator`.
+    pressures : PaperFilter
+        Reads the same, tares the pair and gives the raw airspeed.
+    """
+
+    __slots__ = ("_aided", "_estimator", "_part", "_pressures", "_t")
+
+    def __init__(self, name: str, estimator: Any, pressures: PaperFilter) -> None:
+        self._part, self._estimator, self._t = f"estimator {name!r}", estimator, nan
+        taken = getattr(type(estimator), "accelerometer", None)
+        self._aided = taken is not None and taken is not Estimator.accelerometer
+        self._pressures = pressures
+
+    @property
+    def aided(self) -> bool:
+        """Whether it has an `accelerometer` of its own."""
+        return self._aided
+
+    @property
+    def news(self) -> News:
+        """What it has found of its sensors."""
+        found: News = getattr(self._estimator, "news", [])
+        return found
+
+    def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Take a reading of specific force."""
+        self._t = t
+        self._tell("accelerometer", t, fx, fy, fz)
+
+    def tidy(self) -> None:
+        """Do what can wait."""
+        self._tell("tidy")
+
+    def launched(self, t: float) -> None:
+        """Be told of a launch."""
+        self._tell("launched", t)
+
+    def rearmed(self, t: float) -> None:
+        """Be told that it was none."""
+        self._tell("rearmed", t)
+
+    def unfolding(self, t: float) -> None:
+        """Be told of the wings."""
+        self._tell("unfolding", t)
+
+    def _tell(self, name: str, *values: float) -> None:
+        told: Feel | None = getattr(self._estimator, name, None)
+        if told is None:
+            return
+        try:
+            told(*values)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            raise raised(self._part, self._t, error) from error
+
+    def step(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        """Take one reading of the head; see `Estimator`."""
+        self._t = t
+        try:
+            answer = self._estimator.step(t, p_total, p_static, temperature, t_total, t_static)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            raise raised(self._part, t, error) from error
+        read = self._pressures.step(t, p_total, p_static, temperature, t_total, t_static)
+        if answer is None:
+            return None
+        total, static, nis = p_total - self._pressures.tare()[0], p_static, (nan, nan)
+        try:
+            if len(answer) == WHOLE:
+                _, speed, sd, _, total, static, valid, *nis_ = map(float, answer)
+                nis = nis_[0], nis_[1]
+            else:
+                speed, sd, valid = map(float, answer)
+        except (TypeError, ValueError):
+            raise OnboardError(
+                f"{self._part} answered {shown(answer)} at {t:.4f} s; it must be None, (airspeed, sd, valid) or a "
+                "whole estimate"
+            ) from None
+        self._check(answer, speed, sd, valid)
+        return t, speed, sd, nan if read is None else read[3], total, static, valid == 1.0, nis[0], nis[1]
+
+    def _check(self, answer: Any, speed: float, sd: float, valid: float) -> None:
+        if valid not in (0.0, 1.0):
+            wrong = "valid must be True or False"
+        elif valid and not (speed >= 0.0 and isfinite(speed)):
+            wrong = "a valid airspeed is a number from 0 on"
+        elif valid and not (sd >= 0.0 and isfinite(sd)):
+            wrong = "the standard deviation of a valid airspeed is a number from 0 on"
+        elif speed < 0.0 or sd < 0.0:
+            wrong = "neither airspeed nor standard deviation is below 0"
+        else:
+            return
+        raise OnboardError(f"{self._part} answered {shown(answer)} at {self._t:.4f} s; {wrong}")

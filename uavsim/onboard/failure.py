@@ -1,0 +1,37 @@
+"""How a part on board fails: what it raises, and answers that are none, end the flight with a reason.
+
+Only parts that are not ours are looked at so (`launch.guarded`, `airspeed.guarded`): ours return, whatever they read.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+
+class OnboardError(Exception):
+    """A part on board has failed; one line: which, when and how."""
+
+
+def raised(part: str, t: float, error: BaseException) -> OnboardError:
+    """Say that a part raised an exception."""
+    said = " ".join(f"{type(error).__name__}: {error}".split())[:300]
+    return OnboardError(f"{part} raised {said} at {t:.4f} s")
+
+
+@contextmanager
+def built(part: str) -> Iterator[None]:
+    """Turn what making a part raises into one line; it has not flown yet, so it is the user's to mend."""
+    try:
+        yield
+    except Exception as error:
+        said = " ".join(f"{type(error).__name__}: {error}".split())[:300]
+        raise ValueError(f"{part} cannot be made: {said}") from error
+
+
+def shown(answer: Any) -> str:
+    """Return an answer in at most 80 letters."""
+    try:
+        said = " ".join(repr(answer).split())
+    except Exception:  # noqa: BLE001
+        said = f"something of {type(answer).__name__}"
+    return said if len(said) <= 80 else f"{said[:77]}…"
