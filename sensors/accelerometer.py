@@ -2,7 +2,7 @@
 
 Continuous, at the plant's steps and linear between them:
 
-    u = Rᵀ (f + v)                                 vibration v is felt like everything else; R: attitude of the case
+    u = Rᵀ f                                       f with all vibration in it; R: attitude of the case
     c = (I + C) (u + k₂ u² + k₃ u³)                nonlinearity, each axis: k₂ rectifies vibration; cross-axis
     h = low-pass(c)                                one or two poles, exact (`sensors.filters`)
     z_k = h(t_k - D - δ_k)                         age D of the signal at its time stamp, with jitter δ
@@ -48,12 +48,12 @@ from sensors.mounting import IDENTITY, Matrix, attitude, linear, product, transp
 from sensors.noise import BLOCK, Array, drift, random_walk, shaped
 from sensors.settings import AccelerometerSettings, Fault, ThermalSettings
 from sensors.streams import Streams
+from sensors.surroundings import Surroundings
 from sensors.thermal import Die
 from sensors.unit import MOST_RATE_ERROR, REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error
-from sensors.vibration import Vibration
 
 Felt = tuple[float, Triple]
-"""Plant time, s, and true specific force then, body axes, m/s²."""
+"""Plant time, s, and true specific force then, vibration included, body axes, m/s²."""
 Step = Callable[[Felt], tuple[Reading, ...]]
 Arrive = Callable[[Reading], Reading | None]
 Stages = tuple[Stage | None, Callable[[Triple], None] | None, Callable[[float], Triple] | None]
@@ -78,8 +78,6 @@ class Accelerometer:
     unit : {"random", "typical", "ideal"}
         The unit's errors (bias, scale, their temperature coefficients, cross-axis, nonlinearity, rectification, rate):
         drawn within the datasheet, exactly one standard deviation, or none.
-    vibration : Vibration, optional
-        What is felt beside the truth.
     name : str
         Prefix of its streams, for a second one.
     mounting : 3x3 rows
@@ -92,8 +90,8 @@ class Accelerometer:
         Age of the signal at its time stamp and its standard deviation, s; it is never below 0.
     thermal : ThermalSettings, optional
         Of the die; None is without self-heating.
-    air_temperature : callable, optional
-        Gives the temperature of the air at present, K; asked about once a second. None is 25 °C throughout.
+    surroundings : Surroundings, optional
+        The air, whose temperature is asked for about once a second. None is 25 °C throughout.
     faults : sequence of Fault
         What breaks.
 
@@ -124,7 +122,7 @@ class Accelerometer:
     """
 
     __slots__ = (
-        "_air_temperature", "_distortion", "_jitter", "_name", "_streams", "_thermal", "bias",
+        "_distortion", "_jitter", "_name", "_streams", "_surroundings", "_thermal", "bias",
         "bias_tc", "cross_axis", "description", "nonlinearity", "phase", "rate_error", "rectification", "scale_error",
         "scale_tc", "step",
     )  # fmt: skip
@@ -139,7 +137,6 @@ class Accelerometer:
         dt: float = 1e-3,
         bias: float | Triple = 0.0,
         unit: Unit = "random",
-        vibration: Vibration | None = None,
         name: str = "accelerometer",
         mounting: Matrix = IDENTITY,
         rate_error: float = 0.0,
@@ -147,7 +144,7 @@ class Accelerometer:
         delay: float = 0.0,
         delay_jitter: float = 0.0,
         thermal: ThermalSettings | None = None,
-        air_temperature: Callable[[], float] | None = None,
+        surroundings: Surroundings | None = None,
         faults: Sequence[Fault] = (),
     ) -> None:
         if not 0.0 <= delay < inf or not 0.0 <= delay_jitter < inf:
@@ -156,12 +153,11 @@ class Accelerometer:
         self._streams, self._name, self._jitter = streams, name, jitter
         self._draw_unit((bias, bias, bias) if isinstance(bias, float | int) else bias, rate_error, unit)
         self._thermal = ThermalSettings() if thermal is None else thermal
-        self._air_temperature = air_temperature
+        self._surroundings = surroundings
         self._distortion = distortion(transposed(mounting), self.rectification, self.nonlinearity, self.cross_axis)
         self.phase = self._clock().phase
         arrive = reading_faults(faults, streams, name)
-        shaking = Vibration.still() if vibration is None else vibration
-        unit_at_work = self._sense(shaking, dt, delay, delay_jitter, arrive)
+        unit_at_work = self._sense(dt, delay, delay_jitter, arrive)
         next(unit_at_work)
         self.step = unit_at_work.send
 
@@ -172,13 +168,12 @@ class Accelerometer:
         streams: Streams,
         *,
         dt: float = 1e-3,
-        vibration: Vibration | None = None,
-        air_temperature: Callable[[], float] | None = None,
+        surroundings: Surroundings | None = None,
         name: str = "accelerometer",
     ) -> "Accelerometer":
         """Return the accelerometer that a scenario chooses; what is not in the settings is as of the class.
 
-        The settings' position and vibration scale are matters of the plant and of `vibration`.
+        The settings' position and vibration scale are matters of the plant and of the vibration.
         """
         return cls(
             settings.description(),
@@ -186,7 +181,6 @@ class Accelerometer:
             dt=dt,
             bias=settings.bias,
             unit=settings.unit,
-            vibration=vibration,
             name=name,
             mounting=product(attitude(*settings.mounting_deg), attitude(*settings.mounting_error_deg)),
             rate_error=0.01 * settings.rate_error_percent,
@@ -194,7 +188,7 @@ class Accelerometer:
             delay=settings.delay,
             delay_jitter=settings.delay_jitter,
             thermal=settings.thermal,
-            air_temperature=air_temperature,
+            surroundings=surroundings,
             faults=settings.faults,
         )
 
@@ -223,7 +217,7 @@ class Accelerometer:
             yield np.column_stack((np.fromiter(islice(times, len(error)), float), counts * lsb))
 
     def _sense(
-        self, vibration: Vibration, dt: float, delay: float, delay_jitter: float, arrive: Arrive | None
+        self, dt: float, delay: float, delay_jitter: float, arrive: Arrive | None
     ) -> Generator[tuple[Reading, ...], Felt, None]:
         """Take in the force of each plant step and yield the readings up to it."""
         distort = self._distortion
@@ -236,9 +230,7 @@ class Accelerometer:
         older = _delays(delay, delay_jitter, self._streams(f"{self._name}.delay")).__next__
 
         t, (fx, fy, fz) = yield ()
-        vx, vy, vz = vibration.step()
-        first = fx + vx, fy + vy, fz + vz
-        first = fx, fy, fz = first if distort is None else distort(*first)
+        first = fx, fy, fz = (fx, fy, fz) if distort is None else distort(fx, fy, fz)
         x, y, z = ox, oy, oz = first
         lx = ly = lz = 0.0  # error of the low-pass
         smooth, keep, recall = self._stages(first, dt, delay, delay_jitter)
@@ -249,8 +241,6 @@ class Accelerometer:
                     px, py, pz = fx, fy, fz
                     t, (fx, fy, fz) = yield readings
                     readings = ()
-                    vx, vy, vz = vibration.step()
-                    fx, fy, fz = fx + vx, fy + vy, fz + vz
                     if distort is not None:
                         fx, fy, fz = distort(fx, fy, fz)
                     ox, oy, oz = x, y, z
@@ -298,7 +288,7 @@ class Accelerometer:
         """Yield the gain, counts per m/s², and rows of what is added, counts, for about a second each time."""
         counts = 1.0 / self.description.resolution
         heated = any((*self.bias_tc, *self.scale_tc))
-        die, air = Die(self._thermal), self._air_temperature
+        die, around = Die(self._thermal), self._surroundings
         length = BLOCK
         while heated and length > max(1.0, self.description.rate):
             length //= 2
@@ -306,7 +296,7 @@ class Accelerometer:
         for noise in self._noise():
             for first in range(0, BLOCK, length):
                 if heated:
-                    outside = REFERENCE_TEMPERATURE if air is None else air()
+                    outside = REFERENCE_TEMPERATURE if around is None else around.flow()[2]
                     warmer = die.step(self.phase + k * self._interval, outside) - REFERENCE_TEMPERATURE
                 bias = [b + tc * warmer for b, tc in zip(self.bias, self.bias_tc, strict=True)]
                 gain = [(1.0 + s + tc * warmer) * counts for s, tc in zip(self.scale_error, self.scale_tc, strict=True)]

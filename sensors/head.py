@@ -9,10 +9,10 @@ The sensors run freely, so the two values of a row are of different instants and
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
 cover both ports feel the static pressure, wind or not.
 
-There are two ways to ask for the truth. With nothing between the air and two sensors that do not feel acceleration, a
-conversion takes the truth at the middle of its window, and only conversions that are polled ask for it (`full` is
-false). Otherwise the head must be told of each plant step (`feel`): ports, tubes and membranes are followed, and a
-conversion is the mean over its window of what is felt, linear between plant steps and integrated exactly,
+With nothing between the air and two sensors that do not feel acceleration, a conversion takes the truth at the middle
+of its window, and only conversions that are polled ask for it (`full` is false). Otherwise the head must feel each
+plant step (`feel`): ports, tubes and membranes are followed, and a conversion is the mean over its window of what is
+felt, linear between plant steps and integrated exactly,
 
     z = 1/T ∫ p dt = 1/(x₁ - x₀) [Σ' p_i + F(x₁) - F(x₀)],   F(i + w) = w p_i + w²/2 (p_{i+1} - p_i)
 
@@ -20,7 +20,6 @@ with x in steps and Σ' the trapezoidal sum between whole steps: vibration on th
 part, and a pressure that is no number spoils the windows it is in and no others.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from math import inf, nan
 
@@ -30,17 +29,15 @@ from sensors.pressure import PressureSensor
 from sensors.probe import static_port, total_port
 from sensors.settings import AirDataSettings, PortFault, PressureSettings, ThermalSettings, TubeSettings
 from sensors.streams import Streams
+from sensors.surroundings import Air, Flow, Surroundings
 from sensors.unit import Triple, Unit
 
-Air = tuple[float, float, float]
-"""True total and static pressure, Pa, and temperature, K."""
-Flow = tuple[float, float, float, float, float, float, float, float, float, float]
-"""True total and static pressure, Pa, temperature, K, Mach number, angle of attack and sideslip, rad, throttle 0 … 1,
-and specific force x, y, z at the head, vibration included, body axes, m/s²."""
 Row = tuple[float, float, float, float, float, float]
 
 AFT, DOWN = (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)  # tubes from the total and the static port to their sensors
 FORWARD = (1.0, 0.0, 0.0)  # normal of the total sensor's membrane; DOWN is the static sensor's (the published head)
+NO_FLOW: Flow = (nan,) * 7  # until somebody says
+NO_AIR: Air = (nan,) * 3
 MOST_REMEMBERED = 4096  # steps: conversions are made at the latest when so many wait for a poll
 
 
@@ -52,6 +49,8 @@ class AirDataHead:
     settings : AirDataSettings
     streams : Streams
         Streams "{name}.total. …", "{name}.static. …" and "{name}.poll" are used.
+    surroundings : Surroundings, optional
+        The air; without it there is no number to read.
     dt : float
         Step of the plant, s; meets `feel` only.
     covered_until : float
@@ -69,7 +68,8 @@ class AirDataHead:
         Time of the next poll, s.
     total, static : PressureSensor
     covered_until : float
-        May be set during a flight.
+    surroundings : Surroundings or None
+        Both may be set during a flight.
 
     Raises
     ------
@@ -78,15 +78,16 @@ class AirDataHead:
     """
 
     __slots__ = (
-        "_air", "_dt", "_lines", "_membranes", "_next_poll", "_open", "_settings", "_static_error", "_static_felt",
+        "_dt", "_lines", "_membranes", "_next_poll", "_open", "_settings", "_static_error", "_static_felt",
         "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt", "_total_truth",
-        "covered_until", "due", "full", "static", "total",
+        "covered_until", "due", "full", "static", "surroundings", "total",
     )  # fmt: skip
 
     def __init__(
         self,
         settings: AirDataSettings,
         streams: Streams,
+        surroundings: Surroundings | None = None,
         *,
         dt: float = 1e-3,
         covered_until: float = -inf,
@@ -100,7 +101,7 @@ class AirDataHead:
         poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
         self.due, self._next_poll = poll.due, poll.later
 
-        self._air: Callable[[float], Air] = lambda _: (nan, nan, nan)  # until somebody says
+        self.surroundings = surroundings
         self._dt, self._steps_per_second = dt, 1.0 / dt
         self._total_error, self._static_error = total_port(settings.total_port), static_port(settings.static_port)
         self._total_felt: list[float] = []
@@ -115,15 +116,24 @@ class AirDataHead:
         self._static_truth = self._mean_of_static if self.full else self._static_port
         self._lines = None
 
-    def feel(self, t: float, flow: Flow) -> None:
-        """Take in flow and specific force at plant time `t`, s: each step, and before `step`.
+    def feel(self, t: float, force: Triple) -> None:
+        """Take in the air and the specific force at plant time `t`, s: each step, and before `step`.
 
         What comes first is taken to have been there before, and tubes are made for its air.
+
+        Parameters
+        ----------
+        t : float
+            Plant time, s.
+        force : (x, y, z)
+            Specific force at the head, vibration included, body axes, m/s².
         """
-        total, static, self._temperature, _, _, _, _, fx, fy, fz = flow
+        flow = NO_FLOW if self.surroundings is None else self.surroundings.flow()
+        total, static, self._temperature, _, _, _, _ = flow
         self._t = t
+        fx, fy, fz = force
         if not self._open or t < self.covered_until:
-            total, static = self._behind(t, flow)
+            total, static = self._behind(t, flow, force)
         tx, ty, tz, sx, sy, sz = self._membranes
         felt = self._total_felt
         felt.append(total + tx * fx + ty * fy + tz * fz)
@@ -132,16 +142,13 @@ class AirDataHead:
             self.total.read(t, self._total_truth)
             self.static.read(t, self._static_truth)
 
-    def step(self, until: float, air: Callable[[float], Air] | None = None) -> list[Row]:
+    def step(self, until: float) -> list[Row]:
         """Return the rows polled up to plant time `until`.
 
         Parameters
         ----------
         until : float
             The present plant time, s.
-        air : callable
-            Gives the true (total pressure Pa, static pressure Pa, temperature K) at any time since the last poll; asked
-            only at the middle of a conversion that is read, and not at all by a head that is `full`.
 
         Returns
         -------
@@ -149,8 +156,6 @@ class AirDataHead:
             (t, p_total, p_static, temperature, t_total, t_static): s, Pa, Pa, K, s, s. NaN before a sensor's first
             finished conversion. The temperature is the static sensor's.
         """
-        if air is not None:
-            self._air = air
         rows: list[Row] = []
         t = self.due
         while t <= until:
@@ -163,11 +168,11 @@ class AirDataHead:
     # -- the truth of a conversion -----------------------------------------------------------------------------------
 
     def _total_port(self, t: float) -> tuple[float, float]:
-        p_total, p_static, temperature = self._air(t)
+        p_total, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
         return (p_static if t < self.covered_until else p_total), temperature
 
     def _static_port(self, t: float) -> tuple[float, float]:
-        _, p_static, temperature = self._air(t)
+        _, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
         return p_static, temperature
 
     def _mean_of_total(self, middle: float) -> tuple[float, float]:
@@ -196,9 +201,9 @@ class AirDataHead:
 
     # -- between the air and the sensors -----------------------------------------------------------------------------
 
-    def _behind(self, t: float, flow: Flow) -> tuple[float, float]:
+    def _behind(self, t: float, flow: Flow, force: Triple) -> tuple[float, float]:
         """Return the pressures at the two sensors."""
-        p_total, p_static, temperature, mach, alpha, beta, throttle, fx, fy, fz = flow
+        p_total, p_static, temperature, mach, alpha, beta, throttle = flow
         total, static = p_total, p_static
         if t < self.covered_until:
             total = p_static
@@ -210,7 +215,6 @@ class AirDataHead:
         if self._lines is None:
             self._lines = self._connect(p_static, temperature)
         total_line, static_line = self._lines
-        force = (fx, fy, fz)
         if total_line is not None:
             total = total_line.step(t, total, p_static, temperature, force)
         if static_line is not None:

@@ -12,7 +12,7 @@ can alias.
 """
 
 from collections.abc import Callable, Iterator
-from itertools import chain, count, cycle, islice, repeat
+from itertools import chain, count, cycle, islice
 from math import ceil, inf, isfinite, pi, radians
 
 import numpy as np
@@ -102,18 +102,10 @@ class Vibration:
         rest = _endless(stroke, released + tau.size)
         self._shake(chain(islice(waiting, released), ringing.tolist(), rest), aloft=False)
 
-    @classmethod
-    def still(cls) -> "Vibration":
-        """Return no vibration at all."""
-        self = cls.__new__(cls)
-        self._dt = 1.0
-        self._unit = np.zeros((1, 3))
-        self._flight_rms = 0.0
-        self._released = inf
-        self._sources = ()
-        self._k = 0
-        self.step = repeat((0.0, 0.0, 0.0)).__next__
-        return self
+    def on(self, force: tuple[float, float, float]) -> tuple[float, float, float]:
+        """Go on by a step and return what everything feels of a true specific force then, m/s²."""
+        (fx, fy, fz), (vx, vy, vz) = force, self.step()
+        return fx + vx, fy + vy, fz + vz
 
     def leave_rail(self, t: float) -> None:
         """Go over to the vibration of flight: the next step has the noise of the plant step at time `t`."""

@@ -200,6 +200,7 @@ class Cosimulation:
         self.head = AirDataHead(
             air,
             streams,
+            self.plant,
             dt=1.0 / STEP_RATE,
             covered_until=release - air.cover_off if air.tare == "covered" else -math.inf,
         )
@@ -207,15 +208,14 @@ class Cosimulation:
             scenario.accelerometer,
             streams,
             dt=1.0 / STEP_RATE,
-            vibration=None if self.head.full else self.vibration,
-            air_temperature=self.plant.air_temperature,
+            surroundings=self.plant,
         )
         self.onboard = Onboard(scenario, release, self.draws.calibration)
         self.readings: list[float] = []  # flat: plain floats cost the collector nothing
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
         self.ended = self.reason = ""
-        self._feel()
+        self._begin()
 
     def advance(self, steps: int) -> None:
         """Fly up to `steps` plant steps; `ended` tells why it stopped early, `reason` more of it."""
@@ -226,7 +226,12 @@ class Cosimulation:
 
     def _advance(self, steps: int) -> None:
         plant, onboard, head = self.plant, self.onboard, self.head
-        step, feel, feel_all = plant.step, self.accelerometer.step, self._feel if head.full else None
+        step, felt, sense, feel = (
+            plant.step,
+            self.vibration.on,
+            self.accelerometer.step,
+            head.feel if head.full else None,
+        )
         keep, take, computer = self.readings.extend, onboard.accelerometer, onboard.computer
         on_rail, commands = plant.on_rail, computer.commands
         air: Sequence[AirReading]
@@ -236,8 +241,11 @@ class Cosimulation:
             if not plant.aloft:
                 self.ended = "crashed" if plant.finite else "diverged"
                 return
-            readings = feel((t, plant.force)) if feel_all is None else feel_all()
-            air = head.step(t, plant.air) if head.due <= t else ()
+            force = felt(plant.force)
+            if feel is not None:
+                feel(t, force)
+            readings = sense((t, force))
+            air = head.step(t) if head.due <= t else ()
             for reading in readings:
                 if air and air[0][0] < reading[0]:
                     air = self._take_air(air, reading[0])
@@ -255,15 +263,12 @@ class Cosimulation:
         if plant.k >= self.steps:
             self.ended = "completed" if plant.finite else "diverged"
 
-    def _feel(self) -> tuple[Reading, ...]:
-        """Let the accelerometer feel this plant step, and a head that follows each; return the readings."""
-        plant = self.plant
-        if not self.head.full:
-            return self.accelerometer.step((plant.t, plant.force))
-        (fx, fy, fz), (vx, vy, vz) = plant.force, self.vibration.step()
-        felt = fx + vx, fy + vy, fz + vz
-        self.head.feel(plant.t, (*plant.flow(), *felt))
-        return self.accelerometer.step((plant.t, felt))
+    def _begin(self) -> None:
+        """Let all that feel have the plant as it stands before its first step."""
+        force = self.vibration.on(self.plant.force)
+        if self.head.full:
+            self.head.feel(self.plant.t, force)
+        self.accelerometer.step((self.plant.t, force))
 
     def _take_air(self, rows: Sequence[AirReading], until: float) -> Sequence[AirReading]:
         """Hand on the rows with a time stamp before `until`; return the rest."""

@@ -36,6 +36,16 @@ FINE = 1e-8  # m/s²
 OPEN = SILENT.scaled(1.0, AccelerometerErrors(bandwidth=False, quantisation=False))
 
 
+class Air:
+    """Surroundings of which only the temperature, K, is there."""
+
+    def __init__(self, temperature):
+        self._temperature = temperature
+
+    def flow(self):
+        return nan, nan, self._temperature(), nan, nan, nan, nan
+
+
 def _fly(device, force, duration):
     """Readings of a device that feels force(t), as an array with the columns t, fx, fy, fz."""
     readings = []
@@ -174,8 +184,8 @@ def test_vibration_goes_through_the_bandwidth():
     rms = []
     for rate in (6664.0, 52.0):
         vibration = Vibration(settings, Streams(10), dt=DT, release_time=np.inf, plateau=0.0)
-        device = Accelerometer(SILENT.select(rate=rate), Streams(10), unit="ideal", vibration=vibration)
-        rms.append(_fly(device, lambda t: (0.0, 0.0, 0.0), 20.0)[:, 1:].std())
+        device = Accelerometer(SILENT.select(rate=rate), Streams(10), unit="ideal")
+        rms.append(_fly(device, lambda t, felt=vibration.on: felt((0.0, 0.0, 0.0)), 20.0)[:, 1:].std())
     assert rms[0] == pytest.approx(G0, rel=0.1)  # linear between steps takes up to (sinc 0.2)² at 200 Hz
     # Mean power of one pole at 26 Hz over a flat band of 5 to 200 Hz: 26/195 (atan(200/26) - atan(5/26)) = 0.166.
     assert rms[1] / G0 == pytest.approx(np.sqrt(0.166), rel=0.1)
@@ -254,8 +264,8 @@ def test_vibration_is_turned_with_the_case():
 
     def readings(mounting):
         shaking = Vibration(vibration, Streams(10), dt=DT, release_time=np.inf, plateau=0.0)
-        device = Accelerometer(SILENT, Streams(10), unit="ideal", vibration=shaking, mounting=mounting)
-        return _fly(device, lambda t: (0.0, 0.0, 0.0), 1.0)[:, 1:]
+        device = Accelerometer(SILENT, Streams(10), unit="ideal", mounting=mounting)
+        return _fly(device, lambda t: shaking.on((0.0, 0.0, 0.0)), 1.0)[:, 1:]
 
     straight, turned = readings(attitude(0, 0, 0)), readings(attitude(10, 20, 30))
     assert turned == pytest.approx(straight @ np.array(attitude(10, 20, 30)), abs=1e-6)
@@ -263,9 +273,10 @@ def test_vibration_is_turned_with_the_case():
 
 def test_vibration_is_felt_from_the_first_step_on():
     """At 6664 Hz six readings lie between the plant's first two steps."""
-    steady = Vibration.still()
+    steady = Vibration(VibrationSettings(), Streams(10), dt=DT, release_time=np.inf, plateau=0.0)
     steady.step = lambda: (5.0, 6.0, 7.0)
-    readings = _fly(Accelerometer(OPEN.select(rate=6664.0), Streams(1), unit="ideal", vibration=steady), _rest, 0.01)
+    device = Accelerometer(OPEN.select(rate=6664.0), Streams(1), unit="ideal")
+    readings = _fly(device, lambda t: steady.on(_rest(t)), 0.01)
     assert readings[:, 1:] == pytest.approx(np.tile([5.0, 6.0, 7.0 - G0], (len(readings), 1)), abs=1e-9)
 
 
@@ -425,7 +436,9 @@ def test_offset_and_scale_follow_the_dies_temperature():
     part = replace(TC, scale_tc_sd=1e-3, scale_tc_limit=inf)
 
     def reading(kelvin):
-        device = Accelerometer(part, Streams(5), unit="typical", air_temperature=lambda: REFERENCE_TEMPERATURE + kelvin)
+        device = Accelerometer(
+            part, Streams(5), unit="typical", surroundings=Air(lambda: REFERENCE_TEMPERATURE + kelvin)
+        )
         return _fly(device, lambda t: FORCE, 0.01)[0, 1:]
 
     assert reading(0.0) == pytest.approx(FORCE, abs=FINE)
@@ -458,7 +471,7 @@ def test_the_air_is_asked_about_once_a_second_and_not_at_all_where_it_has_no_eff
     asked = []
     part = replace(TC, bias_tc_sd=(0,) * 3, scale_tc_sd=0.0)
     for description in (TC, part):
-        device = Accelerometer(description, Streams(5), air_temperature=lambda: asked.append(1) or 280.0)
+        device = Accelerometer(description, Streams(5), surroundings=Air(lambda: asked.append(1) or 280.0))
         _fly(device, _rest, 10.0)
     assert 10 <= len(asked) <= 20
 
@@ -514,7 +527,7 @@ def test_a_term_that_is_off_changes_no_other_draw(off, changed):
     "more",
     [
         {"faults": (Fault("spike", start=5.0, size=1.0),)},
-        {"air_temperature": lambda: REFERENCE_TEMPERATURE},
+        {"surroundings": Air(lambda: REFERENCE_TEMPERATURE)},
         {"mounting": attitude(0, 0, 0)},
         {"thermal": ThermalSettings()},
     ],
@@ -625,9 +638,9 @@ def _record_at_rest(device, count):
     ("part", "more"),
     [
         (LSM, {}),
-        (LSM.select(rate=6664.0), {"air_temperature": lambda: 263.15}),
+        (LSM.select(rate=6664.0), {"surroundings": Air(lambda: 263.15)}),
         (EVERYTHING, {"mounting": attitude(3, 200, 50), "jitter": 1e-4, "delay": 2e-3, "delay_jitter": 1e-4}),
-        (replace(EVERYTHING, poles=2, bandwidths=((60.0,) * 10,)), {"air_temperature": lambda: 263.15}),
+        (replace(EVERYTHING, poles=2, bandwidths=((60.0,) * 10,)), {"surroundings": Air(lambda: 263.15)}),
         (replace(EVERYTHING, poles=0), {"rate_error": 0.013}),
         (LSM.select(range_g=4).scaled(3.0, AccelerometerErrors(drift_model="flicker", scale=30.0)), {"bias": 36.0}),
         (preset("adxl345"), {"thermal": ThermalSettings(5.0, 2.0, 0.0)}),
@@ -698,7 +711,7 @@ def test_a_diverged_plant_leaves_the_other_axes_alone():
 
 def test_air_that_is_no_number_makes_readings_that_are_none_and_is_forgotten():
     now = [0.0]
-    device = Accelerometer(TC, Streams(5), air_temperature=lambda: nan if 2.0 < now[0] < 4.0 else 280.0)
+    device = Accelerometer(TC, Streams(5), surroundings=Air(lambda: nan if 2.0 < now[0] < 4.0 else 280.0))
     readings = []
     for k in range(8001):
         now[0] = k * DT
@@ -767,7 +780,7 @@ def test_finite_in_finite_out_over_the_whole_domain_of_the_settings(chosen, forc
             delay=chosen.delay,
             delay_jitter=chosen.delay_jitter,
             thermal=chosen.thermal,
-            air_temperature=lambda: air,
+            surroundings=Air(lambda: air),
         )
     except ValueError as error:
         if "rate must be above 0" in str(error):  # an oscillator a thousand times as bad as the datasheet's
@@ -793,7 +806,7 @@ def test_from_settings_takes_what_a_scenario_chooses():
         rate_error_percent=1.0, delay=0.01, faults=(Fault("offset", size=5.0, axis="z"),),
         errors=AccelerometerErrors(drift=0.0, random_walk=0.0, quantisation=False),
     )  # fmt: skip
-    device = Accelerometer.from_settings(chosen, Streams(1), air_temperature=lambda: 300.0)
+    device = Accelerometer.from_settings(chosen, Streams(1), surroundings=Air(lambda: 300.0))
     assert device.description == chosen.description()
     assert device.bias == (1.0, 2.0, 3.0)
     assert device.rate_error == 0.01

@@ -35,13 +35,26 @@ QUIET = AirDataSettings(
 STEP = 1 / 64  # Pa, of a BMP581
 
 
+class Around:
+    """Surroundings that are a function of time, or a flow that its owner sets."""
+
+    def __init__(self, air=None):
+        self.now, self._air = None, air
+
+    def flow(self):
+        return self.now
+
+    def air(self, time):
+        return self._air(time)
+
+
 def _fly(head, air, duration, dt=DT):
     """Rows polled while the truth is air(t)."""
-    rows = []
+    rows, head.surroundings = [], Around(air)
     for k in range(1, round(duration / dt) + 1):
         t1 = k * dt
         if head.due <= t1:
-            rows += head.step(t1, air)
+            rows += head.step(t1)
     return np.array(rows)
 
 
@@ -178,9 +191,10 @@ def _flow(total=101_325.0, static=101_325.0, temperature=288.15, *, angles=(0.0,
 
 def _tell(head, flow, duration, dt=DT):
     """Rows polled by a head that is told of each step; `flow` one flow or a function of time."""
-    rows = []
+    rows, head.surroundings = [], Around()
     for k in range(round(duration / dt) + 1):
-        head.feel(k * dt, flow(k * dt) if callable(flow) else flow)
+        *head.surroundings.now, fx, fy, fz = flow(k * dt) if callable(flow) else flow
+        head.feel(k * dt, (fx, fy, fz))
         if head.due <= k * dt:
             rows += head.step(k * dt)
     return np.array(rows)

@@ -47,13 +47,23 @@ def test_negative_seed_or_index_is_an_error(seed, index):
         Streams(seed, index)
 
 
+class Calm:
+    """Surroundings that stay as they are."""
+
+    def flow(self):
+        return (*self.air(0.0), 0.0, 0.0, 0.0, 0.0)
+
+    def air(self, _time):
+        return 101500.0, 101325.0, 288.15
+
+
 def _readings(streams: Streams, with_others: bool):
     """A few readings of an accelerometer and a head, with or without more devices drawn from the same tree."""
     names = ["accelerometer", "second", "third"] if with_others else ["accelerometer"]
     devices = [Accelerometer(preset("lsm6dso32"), streams, name=name) for name in names]
-    heads = [AirDataHead(AirDataSettings(), streams, name=f"air_data{n}") for n in (range(2) if with_others else [0])]
+    count = 2 if with_others else 1
+    heads = [AirDataHead(AirDataSettings(), streams, Calm(), name=f"air_data{n}") for n in range(count)]
     rows = []
-    air = (101500.0, 101325.0, 288.15)
     for k in range(1, 300):
         t = k * 1e-3
         for device in devices:
@@ -61,7 +71,7 @@ def _readings(streams: Streams, with_others: bool):
             if device is devices[0]:
                 rows += readings
         for head in heads:
-            polled = head.step(t, lambda _: air) if head.due <= t else []
+            polled = head.step(t) if head.due <= t else []
             if head is heads[0]:
                 rows += polled
     return np.array([row[:4] for row in rows])

@@ -65,9 +65,14 @@ def test_ring_is_a_decaying_sine_along_x_from_release_on():
     assert not rows[:, 1:].any()
 
 
-def test_scale_multiplies_everything_and_none_is_still():
+def test_scale_multiplies_everything():
     assert _take(_make(scale=3.0), 3000) == pytest.approx(3 * _take(_make(), 3000), rel=1e-12)
-    assert not _take(Vibration.still(), 10).any()
+
+
+def test_what_is_felt_is_the_force_and_the_step_that_comes() -> None:
+    expected = np.add(_take(_make(), 50), (1.0, -2.0, 3.0))
+    shaking = _make()
+    assert [shaking.on((1.0, -2.0, 3.0)) for _ in range(50)] == [tuple(row) for row in expected.tolist()]
 
 
 def test_vibration_is_drawn_by_the_seed():

@@ -411,10 +411,6 @@ class JsbsimPlant:
         total = airdata.isentropic_total(static, mach)
         return total, static, temperature * RANKINE, mach, alpha, beta, throttle
 
-    def air_temperature(self) -> float:
-        """Temperature of the air after this step, K."""
-        return self.row[INDEX["temperature"]] * RANKINE
-
     @property
     def finite(self) -> bool:
         """Whether the whole state is finite, and JSBSim could work it out."""

@@ -1,7 +1,8 @@
 """What the loop asks of whatever the truth comes from.
 
 A plant steps at a fixed interval and keeps its own record, one row of truth a step (`uavsim.truth.UNITS`). What it
-does not have, as a centrifuge has no wing, is NaN there. Sensors read `force`, `air` and `flow`, and nothing else.
+does not have, as a centrifuge has no wing, is NaN there. Sensors read `force`, which the loop hands on with the
+vibration, and ask for `flow` and `air` (`sensors.surroundings`), and nothing else.
 """
 
 from dataclasses import dataclass, field
@@ -56,9 +57,6 @@ class Plant(Protocol):
 
     def flow(self) -> tuple[float, float, float, float, float, float, float]:
         """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
-
-    def air_temperature(self) -> float:
-        """Temperature of the air after this step, K."""
 
     def truth(self) -> dict[str, NDArray[np.float64]]:
         """Columns of the truth, SI, one value a step, the first at time 0."""

@@ -102,11 +102,6 @@ class PrescribedPlant:
         mach, alpha, beta, throttle = (values[k] for values in self._flow)
         return self._total[k], self._static[k], self._temperature[k], mach, alpha, beta, throttle
 
-    def air_temperature(self) -> float:
-        """Temperature of the air after this step, K."""
-        value: float = self._temperature[self.k]
-        return value
-
     def truth(self) -> dict[str, Array]:
         """Columns of the truth up to this step."""
         return {name: np.array(values[: self.k + 1]) for name, values in self._columns.items()}

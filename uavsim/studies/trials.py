@@ -197,12 +197,12 @@ def _feel(scenario: Scenario, flight: _Flight, streams: Streams) -> tuple[Array,
         rise=scenario.launcher.rise,
         scale=settings.vibration_scale,
     )
-    part = Accelerometer.from_settings(settings, streams, dt=1.0 / STEP_RATE, vibration=vibration)
+    part = Accelerometer.from_settings(settings, streams, dt=1.0 / STEP_RATE)
     readings: list[float] = []
     exited, step, left = flight.exit - begin, part.step, False
     for k, force in enumerate(flight.force):
         t = k / STEP_RATE
-        for reading in step((t, force)):
+        for reading in step((t, vibration.on(force))):
             readings.extend(reading)
         if not left and t >= exited:
             left = True
