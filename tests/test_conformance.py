@@ -7,13 +7,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pytest
 
 import uavsim
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.airspeed import EstimatorSettings
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.testing import check_detector, check_estimator
+from uavsim.plants.choice import KINDS, PlantSettings
+from uavsim.plants.plant import Run
+from uavsim.plants.prescribed import PrescribedPlant
+from uavsim.testing import check_detector, check_estimator, check_plant
 
 
 @pytest.mark.parametrize("kind", launch.KINDS)
@@ -306,3 +310,92 @@ def test_an_estimator_is_made_with_its_settings_and_what_is_known() -> None:
 
     with pytest.raises(AssertionError, match=r"cannot be made by Odd\(settings, knowledge, tare_window\)"):
         check_estimator(Odd)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_our_plants_pass(kind: str) -> None:
+    check_plant(KINDS[kind].cls, settings=PlantSettings(kind=kind).own)
+
+
+class Bench(PrescribedPlant):
+    """A plant in few lines: a push along x."""
+
+    @dataclass(frozen=True)
+    class Settings:
+        push: float = 60.0
+
+    def __init__(self, settings: Any, run: Run) -> None:
+        since = run.time - run.release_time
+        push = np.where((since >= 0.0) & (since < 0.4), settings.push, 3.0)
+        super().__init__(run, {"fx": push, "fy": 0.0 * push, "fz": 0.0 * push - 9.4})
+
+
+def test_a_plant_in_few_lines_passes() -> None:
+    check_plant(Bench)
+
+
+class Stuck(Bench):
+    def step(self) -> None: ...
+
+
+class Crashes(Bench):
+    def step(self) -> None:
+        super().step()
+        if self.k == 70:
+            raise ZeroDivisionError("division by zero")
+
+
+class Lies(Bench):
+    def truth(self) -> Any:
+        return {**super().truth(), "fx": super().truth()["fx"] + 1.0}
+
+
+class Lacks(Bench):
+    def truth(self) -> Any:
+        truth = dict(super().truth())
+        del truth["wing"]
+        return truth
+
+
+class Drawn(Bench):
+    drawn = itertools.count()
+
+    def truth(self) -> Any:
+        return {**super().truth(), "roll": np.full(self.k + 1, float(next(self.drawn)))}
+
+
+class Vacuum(Bench):
+    def air(self, time: float) -> Any:
+        return 0.0, 0.0, 288.15
+
+
+class Flat(Bench):
+    def step(self) -> None:
+        super().step()
+        self.force = 1.0, 2.0  # type: ignore[assignment]
+
+
+class Own(Bench):
+    """A step of its own."""
+
+    def __init__(self, settings: Any, run: Run) -> None:
+        super().__init__(settings, Run(run.environment, run.launcher, run.duration, run.release_time))
+
+
+@pytest.mark.parametrize(
+    ("cls", "says"),
+    [
+        (Stuck, "is at step 0, 0 s, and should be at 1"),
+        (Crashes, r"raised ZeroDivisionError: division by zero at 0\.07"),
+        (Lies, "m/s² off the truth's fx, fy, fz"),
+        (Lacks, "lacks the column 'wing'"),
+        (Drawn, "the column 'roll' differs"),
+        (Vacuum, "static pressure of 0 Pa"),
+        (Flat, r"has force = \(1\.0, 2\.0\)"),
+        (Own, "is at step 1, 0.001 s, and should be at 1, 0.0005 s"),
+    ],
+)
+def test_a_plants_fault_is_found(cls: type, says: str) -> None:
+    with pytest.raises(AssertionError, match=says) as caught:
+        check_plant(cls)
+    assert "\n" not in str(caught.value)

@@ -24,7 +24,7 @@ def bench(
 
     Example: uavsim bench catapult --plugin mine.py --set detector.kind=mine
     """
-    from uavsim.onboard.failure import OnboardError
+    from uavsim.failure import PartError
     from uavsim.scenario import load_scenario
     from uavsim.studies.cost import measure, measure_onboard
     from uavsim.views import terminal
@@ -35,6 +35,6 @@ def bench(
         try:
             cost = measure(loaded, progress=bar.show)
             onboard = measure_onboard(loaded)
-        except OnboardError as failure:
+        except PartError as failure:
             raise ValueError(failure) from None
     terminal.print_cost(cost, onboard)

@@ -14,10 +14,10 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from uavsim.failure import PartError
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel, PaperFilter
 from uavsim.onboard.airspeed.guarded import GuardedEstimator
 from uavsim.onboard.airspeed.kinds import kind_of
-from uavsim.onboard.failure import OnboardError
 from uavsim.onboard.interface import Estimate
 from uavsim.onboard.plausible import FASTEST
 from uavsim.testing.hostile import COVERED, START, STROKE, Force, Row, Sample, flight, readings
@@ -86,7 +86,7 @@ class _Trial:
                 return None
             estimate = estimator.step(*reading)
             estimator.tidy()
-        except OnboardError as failure:
+        except PartError as failure:
             raise AssertionError(f"{failure}; the reading was {reading}") from failure
         return estimate
 
@@ -101,7 +101,7 @@ class _Trial:
             if len(reading) == 4 and told and t >= told[-1][0]:
                 try:
                     getattr(estimator, told.pop()[1])(t)
-                except OnboardError as failure:
+                except PartError as failure:
                     raise AssertionError(str(failure)) from failure
         return found
 
