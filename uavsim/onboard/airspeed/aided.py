@@ -31,11 +31,11 @@ from math import expm1, inf, log1p, nan, sqrt
 
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
-from uavsim.onboard.airspeed.energy import GATE, SEVEN_R, EnergyFilter
+from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
+from uavsim.onboard.airspeed.energy_model import GATE
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
-from uavsim.onboard.airspeed.one_pass import OnePassFilter
 from uavsim.onboard.airspeed.push import Push
 from uavsim.onboard.airspeed.readmission import longest_row
 from uavsim.onboard.airspeed.rest_force import RestForce
@@ -105,7 +105,7 @@ class AidedFilter:
     """
 
     aided = True
-    core: type[EnergyFilter] = OnePassFilter
+    core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
         "_apart", "_density", "_either", "_fastest", "_flight_force", "_folded", "_force", "_gained", "_gas", "_ground",
         "_gust", "_gust_falls", "_heat", "_lift", "_longest", "_measured", "_misses", "_noise", "_on_rail", "_patience",
