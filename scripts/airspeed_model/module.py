@@ -283,11 +283,42 @@ def elementwise() -> dict[str, str]:
         "total_hv": checked("7.0 * p / heat * v * y**2.5", H_TOTAL[0], y=physics.Y),
         "total_hp": checked("y**3.5", H_TOTAL[2], y=physics.Y),
         "total_y": checked("1.0 + v * v / heat", physics.Y),
+        "isentropic": checked("p * y * y * y * sqrt(y)", physics.TOTAL.subs({physics.d: 0, physics.k: 0}), y=physics.Y),
+        "isentropic_speed": inverse("sqrt(heat * expm1(2.0 / 7.0 * log1p(excess)))"),
     }
+
+
+def foretold() -> dict[str, str]:
+    """Return the pieces of `foretell`: the first row of f and of F P Fᵀ."""
+    v, b, _, s, *_ = STATES
+    p = sp.Matrix(6, 6, lambda i, j: sp.Symbol(entry(NAMES[i], NAMES[j])))
+    spread = (F * p * F.T)[0, 0]
+    known = {name.name: name for name in p.free_symbols}
+    spread_code = checked("vv + dt * (dt * (bb + 2.0 * bs + ss) - 2.0 * (vb + vs))", spread, **known)
+    return {
+        "told_v": checked("v + gained - dt * drift", physics.STEP[0], drift=b + s),
+        "told_vv": re.sub(r"\b([vbs]{2})\b", r"self.\1", spread_code),
+        "told_p": "self." + checked("p - density * v * s * dt", physics.STEP[2].subs(physics.middle, v)),
+    }
+
+
+def inverse(text: str) -> str:
+    """Return the airspeed's expression if it is the inverse of the isentropic relation.
+
+    Raises
+    ------
+    ArithmeticError
+        It is not.
+    """
+    excess = physics.Y ** sp.Rational(7, 2) - 1
+    names = {"heat": physics.heat, "excess": excess, "expm1": lambda x: sp.exp(x) - 1, "log1p": lambda x: sp.log(1 + x)}
+    if sp.simplify(sp.nsimplify(sp.sympify(text, locals=names)) - physics.v) != 0:
+        raise ArithmeticError(f"{text} is not the airspeed")
+    return text
 
 
 def written() -> str:
     """Write the module."""
-    text = Template(FRAME.read_text(encoding="utf-8")).substitute(prediction() | updates() | elementwise())
+    text = Template(FRAME.read_text(encoding="utf-8")).substitute(prediction() | updates() | foretold() | elementwise())
     formatter = [sys.executable, "-m", "ruff", "format", "--stdin-filename", "energy_model.py", "-"]
     return subprocess.run(formatter, input=text, text=True, capture_output=True, check=True).stdout  # noqa: S603

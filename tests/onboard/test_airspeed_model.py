@@ -1,5 +1,6 @@
 """The generated model against its derivation, against derivatives by complex steps, and its one pass against three."""
 
+import ast
 import importlib
 from pathlib import Path
 
@@ -8,12 +9,15 @@ import pytest
 from numpy.polynomial.legendre import leggauss
 from references.gaussian import NAMES, MatrixFilter
 
+import uavsim
 from uavsim.onboard.airspeed import EnergyFilter, energy_model
 from uavsim.onboard.airspeed.energy import SEVEN_R
 from uavsim.onboard.airspeed.energy_model import (
     GATE,
     RAIL_SHARE,
     covariance_at_rest,
+    isentropic,
+    isentropic_speed,
     process_noise,
     static_slopes,
     step,
@@ -235,3 +239,61 @@ def test_one_pass_equals_the_three_calls(speed):
             assert abs(getattr(one, name) - getattr(three, name)) <= 1e-9 * scale + 1e-12, (k, name)
     assert beyond >= 8 * (speed > 10.0)
     assert [getattr(one, name) for name in PUSHED] == [0.0] * 6
+
+
+def written_to(path):
+    """Names of the attributes of other objects than itself that a module assigns to."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        for target in targets if isinstance(node, ast.Assign | ast.AugAssign | ast.AnnAssign) else ():
+            for part in ast.walk(target):
+                if isinstance(part, ast.Attribute) and getattr(part.value, "id", "") != "self":
+                    yield part.attr
+
+
+def test_state_and_covariance_change_only_in_the_filter(tmp_path):
+    """Whoever else knows something tells it by a method of `EnergyFilter`; the numbers are its own."""
+    own = {*NAMES.values(), *"vbpsdk"}
+    package = Path(uavsim.__file__).parent
+    for path in package.rglob("*.py"):
+        assert not own & set(written_to(path)), path
+    for text in ("energy.vv += 1.0", "self.energy.bb = 0.0", "a, core.bs = 1.0, 0.0"):  # it would be seen
+        (tmp_path / "one.py").write_text(text)
+        assert own & set(written_to(tmp_path / "one.py"))
+
+
+def test_what_the_filter_is_told_is_what_changes():
+    """Each of the short methods changes the numbers that it names and no other."""
+    for method, arguments, changed in (
+        ("shift_speed", (-3.0,), {"v": -3.0}),
+        ("widen_speed", (0.7,), {"vv": 0.7}),
+        ("widen_bias", (0.7,), {"bb": 0.7}),
+        ("widen_static", (0.7,), {"pp": 0.7}),
+    ):
+        f, before = arbitrary(3), arbitrary(3)
+        getattr(f, method)(*arguments)
+        for name in (*NAMES.values(), *"vbpsdk"):
+            assert getattr(f, name) == getattr(before, name) + changed.get(name, 0.0), (method, name)
+    f = arbitrary(3)
+    f.leave_rail(0.9)
+    assert (f.bs, f.ss) == (0.0, 0.9)
+
+
+def test_foretelling_is_a_prediction_without_noise():
+    """Airspeed and its variance are those of `predict` with no noise; nothing of the filter changes."""
+    f, ahead = arbitrary(4), arbitrary(4)
+    v, variance, p = f.foretell(0.013, 0.21, 1.17)
+    np.testing.assert_array_equal(np.column_stack(f.gaussian()), np.column_stack(arbitrary(4).gaussian()))
+    ahead.predict(0.013, 0.21, 0.0, 1.17, True)
+    assert (v, variance) == pytest.approx((ahead.v, ahead.vv), rel=1e-13)
+    assert p == pytest.approx(f.p - 1.17 * f.v * f.s * 0.013, rel=1e-15)
+
+
+def test_isentropic_and_its_inverse():
+    """Liepmann & Roshko, table III: p/p₀ = 0.7840 at M = 0.6, to its four digits; there and back 1e-12."""
+    v = 0.6 * (HEAT / 5.0) ** 0.5  # 7 R T/5 = γ R T
+    assert 1.0 / isentropic(v, 1.0, HEAT) == pytest.approx(0.7840, abs=5e-5)
+    assert isentropic_speed(isentropic(v, 1.0, HEAT) - 1.0, HEAT) == pytest.approx(v, rel=1e-12)
+    assert isentropic(31.7, 99_871.0, HEAT) == pytest.approx(
+        total_pressure(31.7, 99_871.0, 0.0, 0.0, pushed=0.0, heat=HEAT), rel=1e-15
+    )

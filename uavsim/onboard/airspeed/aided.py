@@ -27,12 +27,12 @@ clocks of head and accelerometer agree.
 """
 
 from collections import deque
-from math import expm1, inf, log1p, nan, sqrt
+from math import inf, nan, sqrt
 
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed.energy import SEVEN_R, EnergyFilter
-from uavsim.onboard.airspeed.energy_model import GATE
+from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
@@ -56,7 +56,6 @@ from uavsim.onboard.plausible import (
 from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
 ROWS = 256  # readings of the head that are kept; 0.3 s of them are replayed
-TWO_SEVENTHS = 2.0 / 7.0  # (γ − 1)/γ
 VALID = 8.0  # σ_V
 ONE_SIDED = 9.0  # V²/σ_V², below which a total pressure cannot tell a headwind from a tailwind
 PATIENCE = 1.0  # s after the recognition; then the push was none, and V is what the pressures say
@@ -248,7 +247,7 @@ class AidedFilter:
             static=(before if THINNEST < before < THICKEST else airdata.STANDARD_PRESSURE, ANYWHERE),
             difference_sd=sqrt(self._waiting.tare()[1]),
         )
-        core.bs, core.ss = 0.0, 0.5 * aided.slope_rate**2 * aided.slope_time
+        core.leave_rail(0.5 * aided.slope_rate**2 * aided.slope_time)
         self.energy, self._wind, self._folded = core, 0.0, (inf, inf, 0.0)
         self._start(t - OLDEST, -inf, t + STEADY)
         self._apart = False
@@ -325,12 +324,18 @@ class AidedFilter:
             rest=(rest, rest_sd),
             static=(static, AROUND) if known else (airdata.STANDARD_PRESSURE, ANYWHERE),
             difference_sd=sqrt(tare_variance),
+            speed=self._wind,
         )
-        core.v, self._ground = self._wind, core.p
+        self._ground = core.p
         return core
 
     def _core(
-        self, speed_sd: float, rest: tuple[float, float], static: tuple[float, float], difference_sd: float
+        self,
+        speed_sd: float,
+        rest: tuple[float, float],
+        static: tuple[float, float],
+        difference_sd: float,
+        speed: float = 0.0,
     ) -> EnergyFilter:
         """Make the filter; what f_x reads at rest and the static pressure each with its standard deviation."""
         aided, noise = self._settings.aided, self._noise
@@ -348,6 +353,7 @@ class AidedFilter:
             difference_sd=difference_sd,
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
+            speed=speed,
         )
 
     def _look_at_wind(self, start: float, tare_variance: float, density: float) -> float:
@@ -397,7 +403,7 @@ class AidedFilter:
         raw = nan
         if total and static and temperature > 0.0:  # as `airdata.compressible_airspeed`
             excess = (p_total - self._tare - p_static) / p_static
-            raw = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess))) if excess > 0.0 else 0.0
+            raw = isentropic_speed(excess, self._heat) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
     def _jump(self, total: int, static: int) -> None:
@@ -508,7 +514,7 @@ class AidedFilter:
             difference = reading - energy.p - self._density * energy.v * ahead * energy.s
             spread = energy.pp + self._static_variance
             if self.static_watch.coast(at, reading, difference, spread):
-                energy.pp += difference * difference
+                energy.widen_static(difference * difference)
                 self._tell_of(self._t, "airspeed_recovered", "static")
             return nan
         nis = energy.static(reading, self._static_variance, self._density * energy.v * ahead)
@@ -516,7 +522,7 @@ class AidedFilter:
         if self.time > self._steady_from:
             self._static_seen = reading, at, self._gained.lift()
         elif self._misses >= PERSISTENT:  # no spike, and too early for a fault: it is rather the filter that is wrong
-            energy.pp += energy.innovation * energy.innovation
+            energy.widen_static(energy.innovation * energy.innovation)
             energy.static(reading, self._static_variance, 0.0)
             self._misses = 0
         return nis
@@ -547,7 +553,7 @@ class AidedFilter:
         nis = energy.total(tared, variance, pushed, self._heat)
         if not energy.taken and self.time < self._steady_from:  # so early it is rather the filter that is wrong
             slope = self._density * (energy.v if energy.v > SLOWEST else SLOWEST)
-            energy.vv += (energy.innovation / slope) ** 2
+            energy.widen_speed((energy.innovation / slope) ** 2)
         if self._either and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             self._either = False
             if energy.v < 0.0:  # of an airspeed and its opposite the pressure is the same
@@ -599,12 +605,12 @@ class AidedFilter:
         """Compare a flagged port with the coasting filter; take it back when they have agreed for long enough."""
         energy = self.energy
         excess = max(0.0, (tared - energy.p) / energy.p)
-        speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
+        speed = isentropic_speed(excess, self._heat)
         slope = self._density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
         if self.watch.coast(reading, tared, difference, spread, end):
-            energy.vv += difference * difference
+            energy.widen_speed(difference * difference)
             self._tell_of(self._t, "airspeed_recovered", "total")
 
     def _settle(self, reading: float) -> bool:
@@ -614,16 +620,16 @@ class AidedFilter:
             if self.time < self._patience:
                 return False
             excess = max(0.0, (reading - self._tare - energy.p) / energy.p)
-            speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
+            speed = isentropic_speed(excess, self._heat)
             energy.restart(speed, max(energy.vv, speed * speed / ONE_SIDED))
         elif self._wind > 0.0:
             if energy.v < self._turning and self.time < self._patience:
                 return False
             wind, self._wind = self._wind, 0.0
             excess = max(0.0, (reading - self._tare - energy.p) / energy.p)
-            speed = sqrt(self._heat * expm1(TWO_SEVENTHS * log1p(excess)))
+            speed = isentropic_speed(excess, self._heat)
             if 2.0 * speed < energy.v + abs(energy.v - 2.0 * wind):  # it was a tailwind
-                energy.v -= 2.0 * wind
+                energy.shift_speed(-2.0 * wind)
                 return False
         self._settled = True
         return True
@@ -634,7 +640,7 @@ class AidedFilter:
         pushed = self._push.over(end, self._force)
         if pushed != before:
             widened = self._scale_variance * abs(pushed * pushed - before * before)
-            self.energy.bb += widened
+            self.energy.widen_bias(widened)
             self.watch.jump(self.time, widened)
         return pushed
 
@@ -648,21 +654,16 @@ class AidedFilter:
                 w = self._w
         else:
             dt, u, w = 0.0, self._u, self._w
-        gained = u - self._u
-        drift = energy.b + energy.s
-        speed = energy.v + gained - dt * drift
-        variance = energy.vv + dt * (dt * (energy.bb + 2.0 * energy.bs + energy.ss) - 2.0 * (energy.vb + energy.vs))
+        speed, variance, static = energy.foretell(dt, u - self._u, self._density)
         variance += self._gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
         begin, end, rate = self._folded
         if t > begin and self.time < end:
             variance += rate * (min(t, end) - max(self.time, begin))
-        static = energy.p - self._density * energy.v * energy.s * dt
         if speed < 0.0:  # noqa: PLR1730
             speed = 0.0
         share = self._temperature_share * speed / self._temperature
         sd = sqrt(max(variance, 0.0) + share * share)
-        y = 1.0 + speed * speed / self._heat
-        total = static * y * y * y * sqrt(y)
+        total = isentropic(speed, static, self._heat)
         valid = (
             VALID * sd <= speed <= self._fastest
             and self._measured

@@ -74,6 +74,8 @@ class EnergyFilter(EnergyModel):
         self.vv, self.bb, self.bs, self.ss = known[V, V], known[B, B], known[B, S], known[S, S]
         self.pp, self.dd, self.kk = known[P, P], known[D, D], known[K, K]
 
+    # -- what it is told beside readings ------------------------------------------------------------------------------
+
     def know_push(self) -> float:
         """Take k for known from here on; return what its variance was, (Pa/(m/s²))²."""
         variance, self.kk = self.kk, 0.0
@@ -84,3 +86,108 @@ class EnergyFilter(EnergyModel):
         """Forget the airspeed for another, m/s, of the given variance, m²/s²."""
         self.v, self.vv = speed, variance
         self.vb = self.vp = self.vs = self.vd = self.vk = 0.0
+
+    def shift_speed(self, change: float) -> None:
+        """Move the airspeed, m/s, which is known as well as before."""
+        self.v += change
+
+    def widen_speed(self, variance: float) -> None:
+        """Know the airspeed less well, by a variance of that, m²/s²."""
+        self.vv += variance
+
+    def widen_bias(self, variance: float) -> None:
+        """Know b less well, by a variance of that, (m/s²)²."""
+        self.bb += variance
+
+    def widen_static(self, variance: float) -> None:
+        """Know the static pressure less well, by a variance of that, Pa²."""
+        self.pp += variance
+
+    def leave_rail(self, climb_variance: float) -> None:
+        """Know nothing of the rail: s is of the given variance, (m/s²)², and has nothing to do with b."""
+        self.bs, self.ss = 0.0, climb_variance
+
+    # -- without the total pressure's port -----------------------------------------------------------------------------
+
+    def coast_from(self, speed: float, variance: float, bias: float, bias_variance: float, since: float) -> None:
+        """Begin to coast: V and b are what they were a time `since`, s, ago, carried on without the total pressure.
+
+        Parameters
+        ----------
+        speed, variance : float
+            V now, m/s, and its variance, m²/s².
+        bias, bias_variance : float
+            b then, m/s² and (m/s²)²; over the time its error has gone into V.
+        since : float
+            s.
+        """
+        self.v, self.vv = speed, variance
+        self.b, self.bb = bias, bias_variance
+        self.vb = -bias_variance * since
+        self._part()
+
+    def coast(self, dt: float, gained: float, variance: float, density: float, bias: float, static: float) -> float:
+        """Advance by energy rate alone: V takes what p gains, and p tells nothing of V and b in return.
+
+        Parameters
+        ----------
+        dt, gained, variance, density
+            As of `predict`.
+        bias : float
+            b, m/s², which stays; its deviation from that wanders as b does.
+        static : float
+            Static pressure at the last step, Pa: what p has gained since goes into V.
+
+        Returns
+        -------
+        float
+            The static pressure for the next step, Pa.
+        """
+        v, p = self.v, self.p
+        self.b = 0.0
+        self.predict(dt, gained, variance, density, False)
+        self.v = v + gained - dt * bias + (p - static) / (density * max(v, 1.0))
+        self.b = bias
+        self._part()
+        return p
+
+    def _part(self) -> None:
+        """Forget what V and b have to do with the rest."""
+        self.vp = self.vs = self.vd = self.vk = self.bp = self.bs = self.bd = self.bk = 0.0
+
+    # -- without the static port ---------------------------------------------------------------------------------------
+
+    def leave_static(
+        self,
+        *,
+        static: tuple[float, float],
+        slope: tuple[float, float],
+        bias: tuple[float, float],
+        tied: float,
+        density: float,
+        unseen: float,
+    ) -> None:
+        """Be told that the static pressure has been wrong for a while, and V by what the total pressure made of it.
+
+        Parameters
+        ----------
+        static, slope, bias : tuple of float
+            p, Pa, s and b, m/s²: what they are rather; of s and b the variance, of p what is added to its variance.
+        tied : float
+            Covariance of p and s.
+        density : float
+            ρ, kg/m³.
+        unseen : float
+            What V may have been off by before, m/s.
+        """
+        p, added = static
+        slope_v = density * max(self.v, 1.0)
+        self.v += (self.p - p) / slope_v
+        self.pp += added
+        self.vv += self.pp / slope_v**2 + unseen * unseen
+        self.p = p
+        self.s, self.ss = slope
+        self.b, self.bb = bias
+        self.ps = tied
+        self.vb = self.pd = self.pk = self.sd = self.sk = 0.0
+        self._part()

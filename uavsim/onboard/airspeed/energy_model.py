@@ -14,7 +14,7 @@ m/s²; the pair's difference since the tare d, Pa; error k of the known pressure
 same expressions element by element, of floats or arrays, to those who want matrices.
 """
 
-from math import sqrt
+from math import expm1, log1p, sqrt
 from typing import TypeVar
 
 import numpy as np
@@ -157,6 +157,17 @@ def total_slopes(v: Value, p: Value, *, pushed: Value, heat: float) -> dict[int,
 def static_slopes(ahead: Value) -> dict[int, Value | float]:
     """Return the static pressure's derivatives that are not 0, by state; `ahead` as of `EnergyModel.static`."""
     return {P: 1.0, S: ahead}
+
+
+def isentropic(v: float, p: float, heat: float) -> float:
+    """Return the total pressure, Pa, at an airspeed, m/s, and a static pressure, Pa; `heat` as of `total_pressure`."""
+    y = 1.0 + v * v / heat
+    return p * y * y * y * sqrt(y)
+
+
+def isentropic_speed(excess: float, heat: float) -> float:
+    """Return the airspeed, m/s, at which the total pressure is (1 + excess) times the static one; excess ≥ 0."""
+    return sqrt(heat * expm1(2.0 / 7.0 * log1p(excess)))
 
 
 class EnergyModel:
@@ -306,6 +317,19 @@ class EnergyModel:
             self.pk = pk
             self.ss, self.sd, self.sk = ss, sd, sk
             self.dd = dd
+
+    def foretell(self, dt: float, gained: float, density: float) -> tuple[float, float, float]:
+        """Return airspeed, its variance without noise, and static pressure a time `dt` later; nothing changes.
+
+        The arguments are those of `predict`. The static pressure is moved by the airspeed of now.
+        """
+        v, s = self.v, self.s
+        drift = self.b + s
+        return (
+            v + gained - dt * drift,
+            self.vv + dt * (dt * (self.bb + 2.0 * self.bs + self.ss) - 2.0 * (self.vb + self.vs)),
+            self.p - density * v * s * dt,
+        )
 
     def static(self, reading: float, variance: float, ahead: float) -> float:
         """Take a static pressure.

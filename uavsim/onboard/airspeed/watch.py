@@ -48,11 +48,6 @@ def apart(usual: int) -> float:
     return max(1.0, usual / FINE)
 
 
-def _part(energy: EnergyFilter) -> None:
-    """Forget what V and b have to do with the rest."""
-    energy.vp = energy.vs = energy.vd = energy.vk = energy.bp = energy.bs = energy.bd = energy.bk = 0.0
-
-
 class TotalWatch:
     """Tests of the total pressure's port.
 
@@ -183,27 +178,15 @@ class TotalWatch:
         else:
             self.port.back.flag(self._t)
         self.faulty, self._astray = True, kind in ("drift", "leak")
-        energy.v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
+        v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
         bb = min(self._bb, self._bias_sd * self._bias_sd)
-        energy.vv = self._vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN
-        energy.vv += energy.pp / (slope * slope)
-        energy.b, energy.bb = self._bias, bb
-        energy.vb = -bb * since
+        vv = self._vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
+        energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
-        _part(energy)
 
     def carry(self, energy: EnergyFilter, dt: float, gained: float, variance: float, density: float) -> None:
-        """While flagged, advance by energy rate: V takes what p gains, and p tells nothing of V and b in return.
-
-        The arguments are those of `EnergyFilter.predict`. What b has been found to be stays; its deviation from that
-        wanders as b does.
-        """
-        v, p = energy.v, energy.p
-        energy.b = 0.0
-        energy.predict(dt, gained, variance, density, False)
-        energy.v = v + gained - dt * self._bias + (p - self._p) / (density * max(v, 1.0))
-        energy.b, self._p = self._bias, p
-        _part(energy)
+        """While flagged, advance by energy rate; the arguments are those of `EnergyFilter.predict`."""
+        self._p = energy.coast(dt, gained, variance, density, self._bias, self._p)
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
@@ -291,14 +274,14 @@ class StaticWatch:
         weight, v = density * GRAVITY, max(energy.v, 1.0)
         off = weight * CLIMB_SD
         p = test.held - weight * test.climb_then * test.since
-        energy.v += (energy.p - p) / (density * v)
-        energy.pp += (off * test.since) ** 2 + test.held_variance
-        energy.vv += energy.pp / (density * v) ** 2 + UNSEEN * UNSEEN
-        energy.p, energy.s, energy.ss = p, GRAVITY * test.climb_then / v, (GRAVITY * CLIMB_SD / v) ** 2
-        energy.ps = -off * test.since * GRAVITY * CLIMB_SD / v
-        energy.b, energy.bb = bias, BIAS_SD * BIAS_SD
-        energy.vb = energy.pd = energy.pk = energy.sd = energy.sk = 0.0
-        _part(energy)
+        energy.leave_static(
+            static=(p, (off * test.since) ** 2 + test.held_variance),
+            slope=(GRAVITY * test.climb_then / v, (GRAVITY * CLIMB_SD / v) ** 2),
+            bias=(bias, BIAS_SD * BIAS_SD),
+            tied=-off * test.since * GRAVITY * CLIMB_SD / v,
+            density=density,
+            unseen=UNSEEN,
+        )
 
     def coast(self, t: float, reading: float, difference: float, spread: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
