@@ -29,7 +29,7 @@ from uavsim.onboard.airspeed.energy import SEVEN_R
 from uavsim.onboard.airspeed.energy_model import RAIL_SHARE, step, total_pressure
 from uavsim.onboard.airspeed.frozen import TURNED
 from uavsim.onboard.airspeed.rest_force import WANDER
-from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
+from uavsim.studies.cramer_rao import AirspeedBound, Courses, Schedule, Start
 
 Array = NDArray[np.float64]
 

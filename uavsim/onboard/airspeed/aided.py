@@ -36,7 +36,7 @@ from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_sp
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
-from uavsim.onboard.airspeed.push import Push
+from uavsim.onboard.airspeed.membrane_push import MembranePush
 from uavsim.onboard.airspeed.readmission import longest_row
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
@@ -132,7 +132,7 @@ class AidedFilter:
         aided = settings.aided
         self._gust, self._ground = gust_density(aided, 0.0), nan
         self._gust_falls = aided.gust_height > 0.0 and aided.gust_sd > 0.0
-        self._push, self._force = Push(noise, self._gained, self._rest), 0.0
+        self._push, self._force = MembranePush(noise, self._gained, self._rest), 0.0
         self._on_rail = aided.on_rail
         self._temperature_share = 0.5 * noise.temperature_sd
         self._raw_scale = self._waiting.scale

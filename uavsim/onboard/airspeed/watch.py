@@ -7,7 +7,7 @@ pressure's, V is carried on from there by energy rate alone,
     V = V₀ + ∫ f_x dt − b T + (p − p₀)/(ρ V₀),        σ_V² = σ₀² + (σ_b T)² + gust · T + (σ_p/ρV₀)² + u²
 
 with T the time since, b and σ_b what f_x is off by and how well the filter of `frozen` knows it, and u what a port may
-have been off by before. A port that drifts is left 2 s before its flag, one that leaks (`wandering`) where for 2 s no
+have been off by before. A port that drifts is left 2 s before its flag, one that leaks (`leak`) where for 2 s no
 more than a gust had been between V and the force. If it was the static port, p is carried on with the climb c₀ of then,
 p = p_held − ρ g c₀ T, and V is corrected for it; the total pressure is taken on, and tells the climb by p_t and f_x.
 
@@ -21,10 +21,10 @@ from math import exp, inf
 from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
+from uavsim.onboard.airspeed.leak import LeakTest
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
-from uavsim.onboard.airspeed.wandering import WanderingTest
 
 Kept = tuple[float, float, float, float, float, float, float]
 """When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
@@ -78,7 +78,7 @@ class TotalWatch:
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
-        self._wandering = WanderingTest(aided.gust_sd, aided.gust_length)
+        self._wandering = LeakTest(aided.gust_sd, aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared)
         self.faulty = self._astray = False
         self._t = self._t0 = -inf
