@@ -45,7 +45,7 @@ def watch(settings, drawn, i, total):
                 s.static_end[k],
             )  # fmt: skip
             true = np.interp(s.told[k], drawn.courses.t, drawn.courses.airspeed[i])
-            found.append((s.told[k] - REST - FAILS, row[1] - true, row[2], row[6], estimator.watch.faulty))
+            found.append((s.told[k] - REST - FAILS, row[1] - true, row[2], row[6], estimator.ports.total.faulty))
             k += 1
     return np.array(found, dtype=float)
 

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_PRESSURE, STANDARD_TEMPERATURE
 from uavsim.consistency import Consistency, judge
 from uavsim.onboard.airspeed import AidedFilter, EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.aided import SLOWEST
+from uavsim.onboard.airspeed.air import SLOWEST
 from uavsim.onboard.airspeed.energy import SEVEN_R
 from uavsim.onboard.airspeed.energy_model import RAIL_SHARE, step, total_pressure
 from uavsim.onboard.airspeed.frozen import TURNED

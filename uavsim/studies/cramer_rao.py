@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.aided import AROUND, SLOWEST
+from uavsim.onboard.airspeed.aided import AROUND
+from uavsim.onboard.airspeed.air import SLOWEST
 from uavsim.onboard.airspeed.energy import SEVEN_R
 from uavsim.onboard.airspeed.energy_model import (
     RAIL_SHARE,
