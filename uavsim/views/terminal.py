@@ -201,7 +201,7 @@ def _wanted(low: float | None, high: float | None) -> str:
 def print_batch(flown: "Batch") -> None:
     """Print what several flights gave: outcomes, quantiles of latency and error, what was not as it should be."""
     from uavsim.consistency import mean_band
-    from uavsim.studies.batch_bound import against_bound
+    from uavsim.studies.batch_cramer_rao import against_bound
 
     console, runs = _console(), flown.runs
     summary = ", ".join(f"{count} {name}" for name, count in runs["outcome"].value_counts().items())
