@@ -527,7 +527,7 @@ def test_what_does_not_exist_is_null_and_not_zero() -> None:
         launch["true_time"], launch["detected_time"], launch["latency"], launch["latency_from_crossing"],
         flight["rail_exit_time"], flight["rail_exit_speed"], flight["rail_exit_altitude"], flight["cruise_airspeed"],
         flight["cruise_airspeed_sd"], flight["lowest_altitude_after_exit"],
-        *(airspeed[key] for key in airspeed if key not in ("samples", "stroke", "transition", "cruise")),
+        *(airspeed[key] for key in airspeed if key not in ("estimator", "samples", "stroke", "transition", "cruise")),
         *(airspeed[phase][key] for phase in ("stroke", "transition", "cruise") for key in airspeed[phase]
           if key != "samples"),
     ):  # fmt: skip
