@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from uavsim.scenario import Scenario as Scenario
 
 __version__ = "0.1.0"
-__all__ = ["Flight", "Scenario", "__version__", "airdata", "fly", "load"]
+__all__ = ["Flight", "Scenario", "__version__", "airdata", "fly", "load", "onboard", "plugins", "testing"]
 
 _HOMES = {
     "fly": "uavsim.cosim",
@@ -29,11 +29,14 @@ _HOMES = {
 }
 
 
+_MODULES = ("airdata", "onboard", "plugins", "testing")
+
+
 def __getattr__(name: str) -> object:
     if name in _HOMES:
         return getattr(import_module(_HOMES[name]), name)
-    if name == "airdata":
-        return import_module("uavsim.airdata")
+    if name in _MODULES:
+        return import_module(f"uavsim.{name}")
     raise AttributeError(f"module 'uavsim' has no attribute {name!r}")
 
 

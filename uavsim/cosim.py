@@ -21,12 +21,13 @@ from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
 from uavsim.beliefs import believed_air, believed_noise, calibrated
+from uavsim.failure import PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
-from uavsim.onboard.failure import OnboardError
 from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE
+from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import Plant, Run
 from uavsim.scenario import PLANT_STEP, Scenario, load_scenario, with_kinds
 from uavsim.score import Judged, score
@@ -221,7 +222,7 @@ class Cosimulation:
         """Fly up to `steps` plant steps; `ended` tells why it stopped early, `reason` more of it."""
         try:
             self._advance(steps)
-        except OnboardError as failure:
+        except PartError as failure:
             self.ended, self.reason = FAILED, str(failure)
 
     def _advance(self, steps: int) -> None:
@@ -306,7 +307,11 @@ def make_plant(scenario: Scenario, draws: Draws) -> Plant:
     ValueError
         An aircraft or property that does not exist; a rig that cannot be.
     """
-    return scenario.plant.chosen.cls(scenario.plant.own, plant_settings(scenario, draws))
+    kind, run = scenario.plant.chosen, plant_settings(scenario, draws)
+    if kind.ours:
+        return kind.cls(scenario.plant.own, run)
+    with built(f"plant {kind.name!r}"):
+        return GuardedPlant(kind.name, kind.cls(scenario.plant.own, run), run)
 
 
 def fly(
@@ -372,7 +377,7 @@ def replay(flight: Flight) -> Flight:
     onboard = Onboard(scenario, draws.release_time, draws.calibration)
     readings: list[Reading] = [(a, b, c, d) for a, b, c, d in flight.accelerometer.to_numpy().tolist()]
     air: list[AirReading] = [(a, b, c, d, e, f) for a, b, c, d, e, f in flight.air_data.to_numpy().tolist()]
-    with suppress(OnboardError):  # which ended the flight, too
+    with suppress(PartError):  # which ended the flight, too
         onboard.read(readings, air)
     tables = dict(flight.tables)
     tables["estimate"] = frame_of_rows("estimate", onboard.estimates)

@@ -1,6 +1,6 @@
 """The watch over the total pressure's port: what is flagged, what is not, and the way back.
 
-Flights are drawn from the filter's own model (`studies.matched`), ports made to fail in them.
+Flights are drawn from the filter's own model (`references.matched`), ports made to fail in them.
 """
 
 import math
@@ -8,6 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import matched
+from references.matched import COVERED, LATENCY, MODES, REST, MatchedSettings
 
 from uavsim.airdata import STANDARD_TEMPERATURE
 from uavsim.onboard.airspeed import AidedFilter, AidedSettings, EstimatorSettings
@@ -18,8 +20,6 @@ from uavsim.onboard.airspeed.monitor import CALM as CALM_LEVEL
 from uavsim.onboard.airspeed.monitor import FROZEN, PortMonitor
 from uavsim.onboard.airspeed.readmission import SAME, Readmission, longest_row
 from uavsim.onboard.airspeed.watch import TotalWatch
-from uavsim.studies import matched
-from uavsim.studies.matched import COVERED, LATENCY, MODES, REST, MatchedSettings
 
 CALM = EstimatorSettings(kind="aided", wind_sd=0.2)
 GUSTY = replace(CALM, wind_sd=1.0, aided=AidedSettings(gust_sd=1.0))
@@ -45,7 +45,7 @@ def watch(settings, drawn, i, total):
                 s.static_end[k],
             )  # fmt: skip
             true = np.interp(s.told[k], drawn.courses.t, drawn.courses.airspeed[i])
-            found.append((s.told[k] - REST - FAILS, row[1] - true, row[2], row[6], estimator.watch.faulty))
+            found.append((s.told[k] - REST - FAILS, row[1] - true, row[2], row[6], estimator.ports.total.faulty))
             k += 1
     return np.array(found, dtype=float)
 

@@ -12,8 +12,16 @@ from functools import cache
 from typing import Any
 
 import pytest
-from hostile import COVERED as TARE
-from hostile import (
+
+from uavsim.onboard import airspeed, launch
+from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
+from uavsim.onboard.airspeed.majority import Majority
+from uavsim.onboard.airspeed.spikes import JUMPED, LEFT_OUT, TAKEN, Spikes
+from uavsim.onboard.flight_computer import MOST_EVENTS, FlightComputer, FlightComputerSettings
+from uavsim.onboard.launch import KINDS, DetectorSettings, MultiLevelWindow
+from uavsim.onboard.stamps import AGREED, JUMP, LATEST, Conversions, Stamps, jump
+from uavsim.testing.hostile import COVERED as TARE
+from uavsim.testing.hostile import (
     FORCES,
     KELVIN,
     NAN,
@@ -34,7 +42,7 @@ from hostile import (
     plus,
     readings,
 )
-from invariants import (
+from uavsim.testing.invariants import (
     DETECTOR_RECOVERY,
     computer_returns,
     detector_recovers,
@@ -44,14 +52,6 @@ from invariants import (
     honest,
     launch_after,
 )
-
-from uavsim.onboard import airspeed, launch
-from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.majority import Majority
-from uavsim.onboard.airspeed.spikes import JUMPED, LEFT_OUT, TAKEN, Spikes
-from uavsim.onboard.flight_computer import MOST_EVENTS, FlightComputer, FlightComputerSettings
-from uavsim.onboard.launch import KINDS, DetectorSettings, MultiLevelWindow
-from uavsim.onboard.stamps import AGREED, JUMP, LATEST, Conversions, Stamps, jump
 
 DETECTORS = tuple(KINDS)
 ESTIMATORS = ("paper", "paper-filterpy", "constant-velocity", "jump-adaptive", "aided")

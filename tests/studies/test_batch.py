@@ -16,7 +16,7 @@ from uavsim.cosim import draw
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.studies import batch
 from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch, fly_seeds
-from uavsim.studies.batch_bound import STRETCHES, against_bound, least_error
+from uavsim.studies.batch_cramer_rao import STRETCHES, against_bound, least_error
 
 SHORT = load_scenario("catapult", overrides=["duration=6"])
 SEEDS = [4, 2, 9]

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import matched
+from references.matched import MODES, MatchedSettings
 
 from uavsim.consistency import mean_band
 from uavsim.onboard.airspeed import AidedSettings, EstimatorSettings
-from uavsim.studies import matched
-from uavsim.studies.matched import MODES, MatchedSettings
 
 CALM = EstimatorSettings(kind="aided", wind_sd=0.2)
 SMALL = MatchedSettings(estimator=CALM, runs=30, duration=3.0, seed=5)

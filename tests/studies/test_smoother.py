@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import matched
+from references.matched import COVERED, MODES, REST, MatchedSettings
+from references.smoother import RecordedFilter
+from references.unscented import UnscentedFilter
 
 from uavsim.onboard.airspeed import EstimatorSettings
-from uavsim.onboard.airspeed.ukf import UnscentedFilter
-from uavsim.studies import matched
-from uavsim.studies.matched import COVERED, MODES, REST, MatchedSettings
-from uavsim.studies.smoother import RecordedFilter
 
 SMALL = MatchedSettings(estimator=EstimatorSettings(kind="aided", wind_sd=0.2), runs=2, duration=1.0, seed=4)
 

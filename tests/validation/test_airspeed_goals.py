@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import pytest
+from references import matched
+from references.matched import MODES, MatchedSettings
 
 from uavsim.onboard.airspeed import AidedSettings, EstimatorSettings
-from uavsim.studies import matched
-from uavsim.studies.matched import MODES, MatchedSettings
 
 pytestmark = pytest.mark.slow
 

@@ -19,9 +19,9 @@ import pytest
 from numpy.typing import NDArray
 
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.studies.bound import earliest_deadline
 from uavsim.studies.detections import BatchDetector
 from uavsim.studies.false_alarms import count
+from uavsim.studies.neyman_pearson import earliest_deadline
 from uavsim.studies.signals import MEASURED_CATAPULT, LaunchSettings, Stroke, record_launches
 from uavsim.studies.trials import Drawn, Verdicts, join, judge
 from uavsim.truth import STANDARD_GRAVITY as G0

@@ -26,7 +26,7 @@ def bench(
 
     Example: uavsim bench catapult --plugin mine.py --set detector.kind=mine
     """
-    from uavsim.onboard.failure import OnboardError
+    from uavsim.failure import PartError
     from uavsim.scenario import load_scenario
     from uavsim.studies.cost import measure, measure_onboard
     from uavsim.views import documents, terminal
@@ -37,7 +37,7 @@ def bench(
         try:
             cost = measure(loaded, progress=bar.show)
             onboard = measure_onboard(loaded)
-        except OnboardError as failure:
+        except PartError as failure:
             raise ValueError(failure) from None
     if as_json:
         document(documents.cost(cost, onboard))

@@ -7,7 +7,7 @@ from uavsim.cli.printed import Json, document
 
 
 def plugins(*, plugin: Plugin = None, as_json: Json = False) -> None:
-    """List detectors, estimators and plants: name, where from, version.
+    """List detectors, estimators and plants, and whose they are.
 
     Ours, those of installed packages (entry points uavsim.detectors, uavsim.estimators, uavsim.plants), which are not
     imported for it, and those that --plugin names.

@@ -14,7 +14,7 @@ What may be wrong with readings
     Before a sensor's first conversion its values are NaN. Samples are lost, late, doubled and jittered; a stamp may be
     absurd, and a clock may take a step. A conversion that is polled again has the same end. A value may be NaN,
     infinite or beyond all physics. A part of the aircraft's own meets all of this without raising; of a part of
-    somebody else's an exception ends the flight (`uavsim.onboard.failure`).
+    somebody else's an exception ends the flight (`uavsim.failure`).
 
 What is asked for
     Scalar steps, memory that does not grow, no wall clock, no randomness, and a state that `reset` or a new object has

@@ -102,4 +102,4 @@ def centrifuge(settings: CentrifugeSettings, run: Run) -> PrescribedPlant:
     return PrescribedPlant(run, columns)
 
 
-KINDS.add(Kind("centrifuge", centrifuge, group="centrifuge", launches=False))
+KINDS.add(Kind("centrifuge", centrifuge, group="centrifuge", launches=False, ours=True))

@@ -10,7 +10,12 @@ from uavsim.plants.centrifuge import CentrifugeSettings
 from uavsim.plants.in_jsbsim import NAME
 from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.launch_curve import LaunchCurveSettings
+from uavsim.plants.plant import Plant
 from uavsim.plants.wind_tunnel import WindTunnelSettings
+
+
+def _nobody(*_: object) -> Plant:
+    raise ValueError("this plant is not registered here")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +40,7 @@ class PlantSettings:
     @property
     def chosen(self) -> Kind:
         """What the chosen kind says of itself."""
-        return KINDS[self.kind]
+        return KINDS[self.kind] if self.kind in KINDS else Kind(self.kind, _nobody)
 
     @property
     def own(self) -> Any:

@@ -13,4 +13,4 @@ def in_jsbsim(_: None, run: Run) -> Plant:
     return JsbsimPlant(run)
 
 
-KINDS.add(Kind(NAME, in_jsbsim, flies=True, rings=True))
+KINDS.add(Kind(NAME, in_jsbsim, flies=True, rings=True, ours=True))

@@ -40,6 +40,8 @@ class Kind:
         Whether its push makes an airframe ring: vibration grows with it.
     launches : bool
         Whether its load comes as a launch's does, within a fraction of a second.
+    ours : bool
+        Whether it comes with uavsim; others are guarded (`guarded`).
     """
 
     name: str
@@ -49,6 +51,7 @@ class Kind:
     flies: bool = False
     rings: bool = False
     launches: bool = True
+    ours: bool = False
 
 
 KINDS: Registry[Kind] = Registry("plant")

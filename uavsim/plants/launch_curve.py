@@ -115,4 +115,4 @@ def launch_curve(settings: LaunchCurveSettings, run: Run) -> PrescribedPlant:
     return PrescribedPlant(run, columns, noise * (settings.noise_sd_g * STANDARD_GRAVITY))
 
 
-KINDS.add(Kind("launch-curve", launch_curve, group="launch_curve"))
+KINDS.add(Kind("launch-curve", launch_curve, group="launch_curve", ours=True))

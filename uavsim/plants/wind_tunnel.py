@@ -219,4 +219,4 @@ def wind_tunnel(settings: WindTunnelSettings, run: Run) -> PrescribedPlant:
     return PrescribedPlant(run, columns)
 
 
-KINDS.add(Kind("wind-tunnel", wind_tunnel, group="wind_tunnel", launches=False))
+KINDS.add(Kind("wind-tunnel", wind_tunnel, group="wind_tunnel", launches=False, ours=True))

@@ -1,7 +1,7 @@
 """Flights in the loop held against the bound: the airspeed's error from the true launch on, and what could be had.
 
-Each flight's truth gives a course as `studies.bounds` wants it. With the airspeed V, the height h and the slope that
-the energy-rate relation speaks of,
+Each flight's truth gives a course as `studies.cramer_rao` wants it: the airspeed V, the height h, and the slope of the
+energy-rate relation,
 
     s = g ḣ/V = −g v_d/V,
 
@@ -33,7 +33,7 @@ from uavsim.onboard.airspeed import (
 from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
 from uavsim.onboard.airspeed.rest_wind import HIDDEN, VISIBLE
 from uavsim.scenario import scenario_of
-from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
+from uavsim.studies.cramer_rao import AirspeedBound, Courses, Schedule, Start
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]

@@ -21,7 +21,7 @@ from uavsim import inputs
 from uavsim.consistency import mean_band
 from uavsim.files import whole, write_json
 from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch, Result
-from uavsim.studies.batch_bound import FEWEST, against_bound, least_error
+from uavsim.studies.batch_cramer_rao import FEWEST, against_bound, least_error
 from uavsim.studies.quantiles import ecdf_band, quantile_band
 from uavsim.views.faults import set_faults
 from uavsim.views.figure import (
@@ -157,7 +157,7 @@ def ranges(seeds: Iterable[int]) -> str:
 def campaign(flown: Batch, *, bound: bool = True) -> dict[str, Any]:
     """Describe what was flown, with which software and on which processor, and how near it came to the bound.
 
-    `wall_time` in s; `airspeed_bound` as `studies.batch_bound.against_bound` has it, empty without `bound`.
+    `wall_time` in s; `airspeed_bound` as `studies.batch_cramer_rao.against_bound` has it, empty without `bound`.
     """
     return {
         "scenario": flown.scenario.to_dict(),

@@ -4,7 +4,7 @@ from dataclasses import asdict
 from typing import Any
 
 from uavsim.studies.batch import Batch
-from uavsim.studies.batch_bound import against_bound
+from uavsim.studies.batch_cramer_rao import against_bound
 from uavsim.studies.quantiles import quantile_band
 
 QUANTILES = {"p05": 0.05, "median": 0.50, "p95": 0.95}

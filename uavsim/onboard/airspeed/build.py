@@ -1,11 +1,11 @@
 """Makes the estimator that settings name."""
 
+from uavsim.failure import built
 from uavsim.onboard.airspeed.guarded import GuardedEstimator
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.kinds import KINDS
 from uavsim.onboard.airspeed.paper import PaperFilter
 from uavsim.onboard.airspeed.settings import EstimatorSettings
-from uavsim.onboard.failure import built
 from uavsim.onboard.interface import Estimator, TareWindow
 
 

@@ -8,8 +8,8 @@ readings, whatever an estimator makes of them.
 from math import isfinite, nan
 from typing import Any
 
+from uavsim.failure import PartError, raised, shown
 from uavsim.onboard.airspeed.paper import PaperFilter
-from uavsim.onboard.failure import OnboardError, raised, shown
 from uavsim.onboard.interface import Estimate, Estimator, Feel, News
 
 WHOLE = 9  # values of a whole estimate
@@ -101,7 +101,7 @@ class GuardedEstimator(Estimator):
             else:
                 speed, sd, valid = map(float, answer)
         except (TypeError, ValueError):
-            raise OnboardError(
+            raise PartError(
                 f"{self._part} answered {shown(answer)} at {t:.4f} s; it must be None, (airspeed, sd, valid) or a "
                 "whole estimate"
             ) from None
@@ -119,4 +119,4 @@ class GuardedEstimator(Estimator):
             wrong = "neither airspeed nor standard deviation is below 0"
         else:
             return
-        raise OnboardError(f"{self._part} answered {shown(answer)} at {self._t:.4f} s; {wrong}")
+        raise PartError(f"{self._part} answered {shown(answer)} at {self._t:.4f} s; {wrong}")

@@ -7,7 +7,7 @@ pressure's, V is carried on from there by energy rate alone,
     V = V₀ + ∫ f_x dt − b T + (p − p₀)/(ρ V₀),        σ_V² = σ₀² + (σ_b T)² + gust · T + (σ_p/ρV₀)² + u²
 
 with T the time since, b and σ_b what f_x is off by and how well the filter of `frozen` knows it, and u what a port may
-have been off by before. A port that drifts is left 2 s before its flag, one that leaks (`wandering`) where for 2 s no
+have been off by before. A port that drifts is left 2 s before its flag, one that leaks (`leak`) where for 2 s no
 more than a gust had been between V and the force. If it was the static port, p is carried on with the climb c₀ of then,
 p = p_held − ρ g c₀ T, and V is corrected for it; the total pressure is taken on, and tells the climb by p_t and f_x.
 
@@ -21,10 +21,10 @@ from math import exp, inf
 from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
+from uavsim.onboard.airspeed.leak import LeakTest
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
-from uavsim.onboard.airspeed.wandering import WanderingTest
 
 Kept = tuple[float, float, float, float, float, float, float]
 """When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
@@ -46,11 +46,6 @@ SLOWEST = 10.0  # m/s, below which no wing flies
 def apart(usual: int) -> float:
     """Return how many readings say as much as one: a sensor whose steps exceed its noise stays on one for a row."""
     return max(1.0, usual / FINE)
-
-
-def _part(energy: EnergyFilter) -> None:
-    """Forget what V and b have to do with the rest."""
-    energy.vp = energy.vs = energy.vd = energy.vk = energy.bp = energy.bs = energy.bd = energy.bk = 0.0
 
 
 class TotalWatch:
@@ -83,7 +78,7 @@ class TotalWatch:
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
-        self._wandering = WanderingTest(aided.gust_sd, aided.gust_length)
+        self._wandering = LeakTest(aided.gust_sd, aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared)
         self.faulty = self._astray = False
         self._t = self._t0 = -inf
@@ -183,27 +178,15 @@ class TotalWatch:
         else:
             self.port.back.flag(self._t)
         self.faulty, self._astray = True, kind in ("drift", "leak")
-        energy.v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
+        v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
         bb = min(self._bb, self._bias_sd * self._bias_sd)
-        energy.vv = self._vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN
-        energy.vv += energy.pp / (slope * slope)
-        energy.b, energy.bb = self._bias, bb
-        energy.vb = -bb * since
+        vv = self._vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
+        energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
-        _part(energy)
 
     def carry(self, energy: EnergyFilter, dt: float, gained: float, variance: float, density: float) -> None:
-        """While flagged, advance by energy rate: V takes what p gains, and p tells nothing of V and b in return.
-
-        The arguments are those of `EnergyFilter.predict`. What b has been found to be stays; its deviation from that
-        wanders as b does.
-        """
-        v, p = energy.v, energy.p
-        energy.b = 0.0
-        energy.predict(dt, gained, variance, density, False)
-        energy.v = v + gained - dt * self._bias + (p - self._p) / (density * max(v, 1.0))
-        energy.b, self._p = self._bias, p
-        _part(energy)
+        """While flagged, advance by energy rate; the arguments are those of `EnergyFilter.predict`."""
+        self._p = energy.coast(dt, gained, variance, density, self._bias, self._p)
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
@@ -291,14 +274,14 @@ class StaticWatch:
         weight, v = density * GRAVITY, max(energy.v, 1.0)
         off = weight * CLIMB_SD
         p = test.held - weight * test.climb_then * test.since
-        energy.v += (energy.p - p) / (density * v)
-        energy.pp += (off * test.since) ** 2 + test.held_variance
-        energy.vv += energy.pp / (density * v) ** 2 + UNSEEN * UNSEEN
-        energy.p, energy.s, energy.ss = p, GRAVITY * test.climb_then / v, (GRAVITY * CLIMB_SD / v) ** 2
-        energy.ps = -off * test.since * GRAVITY * CLIMB_SD / v
-        energy.b, energy.bb = bias, BIAS_SD * BIAS_SD
-        energy.vb = energy.pd = energy.pk = energy.sd = energy.sk = 0.0
-        _part(energy)
+        energy.leave_static(
+            static=(p, (off * test.since) ** 2 + test.held_variance),
+            slope=(GRAVITY * test.climb_then / v, (GRAVITY * CLIMB_SD / v) ** 2),
+            bias=(bias, BIAS_SD * BIAS_SD),
+            tied=-off * test.since * GRAVITY * CLIMB_SD / v,
+            density=density,
+            unseen=UNSEEN,
+        )
 
     def coast(self, t: float, reading: float, difference: float, spread: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Any
 
-from uavsim.onboard.failure import OnboardError, raised, shown
+from uavsim.failure import PartError, raised, shown
 from uavsim.onboard.interface import Detector
 
 STATE = ("level", "count", "total", "triggered")
@@ -51,7 +51,7 @@ class GuardedDetector:
         except BaseException as error:
             raise raised(self._part, t, error) from error
         if not right or answer is None:
-            raise OnboardError(f"{self._part} answered {shown(answer)} at {t:.4f} s; it must be True or False")
+            raise PartError(f"{self._part} answered {shown(answer)} at {t:.4f} s; it must be True or False")
         return seen
 
     def reset(self) -> None:

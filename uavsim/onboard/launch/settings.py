@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from annotated_types import Gt, Interval, MinLen
 
-from uavsim.onboard.failure import built
+from uavsim.failure import built
 from uavsim.onboard.interface import Detector
 from uavsim.onboard.launch.adaptive_cusum import AdaptiveCusumSettings
 from uavsim.onboard.launch.altos import AltOsSettings

@@ -5,13 +5,15 @@ For any estimator of the state x_k from readings up to k the mean square error i
     J_{k+1} = D₂₂ − D₁₂ᵀ (J_k + D₁₁)⁻¹ D₁₂,    D₁₁ = E[Fᵀ Q⁻¹ F],  D₁₂ = −E[Fᵀ] Q⁻¹,  D₂₂ = Q⁻¹ + E[Hᵀ R⁻¹ H]
 
 (Tichavský, Muravchik & Nehorai 1998, eqs. 22–26, additive Gaussian noise). E is the mean over the true courses of many
-flights, never over estimates. The model is the filter's own, `onboard.airspeed.energy`: accelerometer, total and static
-pressure, temperature and the tare on the rail; no attitude. The turbulence is that which is declared, with its floor.
+flights, never over estimates. The model is the filter's own, `onboard.airspeed.energy_model`, fed by accelerometer,
+total and static pressure, temperature and the tare on the rail. There is no attitude. The turbulence is that which is
+declared, with its floor.
 
 The bound holds for the mean over flights, not for one of them. Where F differs between flights and Q is small, E[Fᵀ
 Q⁻¹ F] credits the estimator with that difference: the bound is then lower than any filter gets, never higher.
 """
 
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -20,16 +22,34 @@ from numpy.typing import NDArray
 
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.aided import AROUND, SLOWEST
-from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
+from uavsim.onboard.airspeed.aided import AROUND
+from uavsim.onboard.airspeed.air import SLOWEST
+from uavsim.onboard.airspeed.energy import SEVEN_R
+from uavsim.onboard.airspeed.energy_model import (
+    RAIL_SHARE,
+    K,
+    V,
+    covariance_at_rest,
+    process_noise,
+    static_slopes,
+    total_slopes,
+    transition,
+)
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 
-V, B, P, S, D, K = range(6)  # the states: airspeed, bias, static pressure, slope, difference, acceleration
-SIZE = 6
+SIZE = 6  # states, as of `energy_model`
 PARAMETER_WALK = 1e-3  # of k's standard deviation, 1/√s: Q must be regular
+LEAST = 1e-6  # of the deviation of k and the walk of d, in their units, for the same reason
+
+
+def filled(entries: Mapping[tuple[int, int], float | Array], matrix: Array) -> Array:
+    """Put entries of the model into a matrix, shape (…, n, n), and return it."""
+    for (i, j), value in entries.items():
+        matrix[..., i, j] = value
+    return matrix
 
 
 class Information:
@@ -177,19 +197,15 @@ class AirspeedBound:
         self._courses, self._schedule, self._noise, self._aided = courses, schedule, noise, settings.aided
         self._gas = GAS_CONSTANT_DRY_AIR * courses.temperature
         self._share = 0.5 * noise.temperature_sd / courses.temperature
-        bias = self._aided.bias_sd**2
-        initial = np.diag(
-            [
-                (settings.wind_sd if start.speed_sd is None else start.speed_sd) ** 2,
-                bias,
-                AROUND**2,
-                bias + start.rest_sd**2,
-                start.tare_sd**2,
-                max(noise.acceleration_sd, 1e-6) ** 2,
-            ]
+        initial = covariance_at_rest(
+            speed_sd=settings.wind_sd if start.speed_sd is None else start.speed_sd,
+            bias_sd=self._aided.bias_sd,
+            static_sd=AROUND,
+            rest_sd=start.rest_sd,
+            difference_sd=start.tare_sd,
+            acceleration_sd=max(noise.acceleration_sd, LEAST),
         )
-        initial[B, S] = initial[S, B] = -bias
-        self._initial = initial
+        self._initial = filled(initial, np.zeros((SIZE, SIZE)))
         self.time = schedule.start
         self._pushed = self._scaled = 0.0  # mean force now, m/s², and what its changes add to b's variance, m²/s⁴
 
@@ -205,7 +221,7 @@ class AirspeedBound:
         return np.full(self._schedule.told.size, np.nan)
 
     def _sd(self) -> Array:
-        self.information = Information(np.linalg.inv(self._initial))
+        self.information = Information(np.asarray(np.linalg.inv(self._initial), dtype=np.float64))
         total_age = 0.5 * self._noise.total_window + self._noise.total_lag
         static_age = 0.5 * self._noise.static_window + self._noise.static_lag
         last_total = last_static = -np.inf
@@ -235,31 +251,28 @@ class AirspeedBound:
         force = c.mean(c.force, start, end)
         railed = bool(np.mean(force) > aided.on_rail)
         keep, stay = (1.0, 1.0) if railed else (1.0 - dt / aided.bias_time, 1.0 - dt / aided.slope_time)
-        f = np.zeros((len(speed), SIZE, SIZE))
-        f[:, range(SIZE), range(SIZE)] = (1.0, keep, 1.0, stay, 1.0, 1.0)
-        f[:, V, B] = f[:, V, S] = -dt
-        f[:, P, V], f[:, P, S] = -density * slope * dt, -density * speed * dt
+        f = filled(
+            transition(slope, speed, density=density, dt=dt, keep=keep, stay=stay),
+            np.tile(np.eye(SIZE), (len(speed), 1, 1)),
+        )
         share = RAIL_SHARE if railed else 1.0
-        q_slope = share * aided.slope_rate**2 * dt
-        q_bias = share * 2.0 * aided.bias_sd**2 / aided.bias_time * dt + self._scaled
-        across = float(np.mean(density * speed)) * dt
-        reach = np.array([[dt * dt / 3.0, across * dt / 3.0], [across * dt / 3.0, across**2 / 3.0]])
-        q = np.zeros((SIZE, SIZE))
         height = (float(c.static[:, 0].mean()) - float(static.mean())) / (STANDARD_GRAVITY * float(density.mean()))
-        q[V, V] = gust_density(aided, height) * float(np.mean(np.maximum(speed, SLOWEST))) * dt
+        variance = gust_density(aided, height) * float(np.mean(np.maximum(speed, SLOWEST))) * dt
         unfolding = self._schedule.unfolding
         meanwhile = max(0.0, min(end, unfolding + aided.unfolding_time) - max(start, unfolding))
-        q[V, V] += aided.unfolding_rate**2 * meanwhile
-        q[V, V] += noise.accelerometer_sd**2 / noise.accelerometer_rate * dt + dt * dt / 3.0 * q_bias
-        q[np.ix_((V, P), (V, P))] += q_slope * reach
-        q[P, P] += aided.static_walk**2 * dt
-        q[V, B] = q[B, V] = -0.5 * dt * q_bias
-        q[V, S] = q[S, V] = -0.5 * dt * q_slope
-        q[P, S] = q[S, P] = -0.5 * across * q_slope
-        q[B, B], q[S, S] = q_bias, q_slope
-        q[D, D] = max(noise.walk, 1e-6) ** 2 * dt
-        q[K, K] = (PARAMETER_WALK * max(noise.acceleration_sd, 1e-6)) ** 2 * dt
-        return f, q
+        variance += aided.unfolding_rate**2 * meanwhile
+        variance += noise.accelerometer_sd**2 / noise.accelerometer_rate * dt
+        entries = process_noise(
+            -float(np.mean(density * speed)) * dt,
+            dt=dt,
+            variance=variance,
+            bias=share * 2.0 * aided.bias_sd**2 / aided.bias_time * dt + self._scaled,
+            slope=share * aided.slope_rate**2 * dt,
+            walk=aided.static_walk**2 * dt,
+            drift=max(noise.walk, LEAST) ** 2 * dt,
+        )
+        entries[K, K] = (PARAMETER_WALK * max(noise.acceleration_sd, LEAST)) ** 2 * dt
+        return f, filled(entries, np.zeros((SIZE, SIZE)))
 
     def _advance(self, to: float) -> None:
         self.information.predict(*self._model(self.time, to))
@@ -267,26 +280,24 @@ class AirspeedBound:
 
     def _static(self, at: float) -> None:
         c = self._courses
-        slopes = np.zeros((len(c.airspeed), SIZE))
-        slopes[:, P] = 1.0
-        slopes[:, S] = c.at(c.static, self.time) / self._gas * c.at(c.airspeed, self.time) * (self.time - at)
-        self.information.update(slopes, self._noise.static_sd**2)
+        ahead = c.at(c.static, self.time) / self._gas * c.at(c.airspeed, self.time) * (self.time - at)
+        self._take(static_slopes(ahead), self._noise.static_sd)
 
     def _total(self, end: float) -> None:
         c, noise = self._courses, self._noise
         speed, static = c.at(c.airspeed, self.time), c.at(c.static, self.time)
-        heat = SEVEN_R * c.temperature
-        y = 1.0 + speed**2 / heat
-        slopes = np.zeros((len(speed), SIZE))
-        slopes[:, V] = 7.0 * static / heat * speed * y**2.5
-        slopes[:, P] = y**3.5
-        slopes[:, D] = 1.0
         window = noise.total_window or 1.0 / noise.accelerometer_rate
-        slopes[:, K] = c.mean(c.force, end - noise.total_lag - window, end - noise.total_lag)
-        pushed = float(np.mean(slopes[:, K]))
+        push = c.mean(c.force, end - noise.total_lag - window, end - noise.total_lag)
+        pushed = float(np.mean(push))
         self._scaled = noise.accelerometer_scale_sd**2 * abs(pushed**2 - self._pushed**2)
         self._pushed = pushed
-        self.information.update(slopes, noise.total_sd**2)
+        self._take(total_slopes(speed, static, pushed=push, heat=SEVEN_R * c.temperature), noise.total_sd)
+
+    def _take(self, slopes: Mapping[int, float | Array], sd: float) -> None:
+        row = np.zeros((len(self._courses.airspeed), SIZE))
+        for state, slope in slopes.items():
+            row[:, state] = slope
+        self.information.update(row, sd**2)
 
     def _told(self, t: float) -> float:
         """Least standard deviation at the time of a reading, later than the filter's own by the lag."""

@@ -15,7 +15,7 @@ SAME = 4.0  # standard deviations of a mean specific force, within which it is t
 GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
 
 
-class Push:
+class MembranePush:
     """The present push.
 
     Parameters

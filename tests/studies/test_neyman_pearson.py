@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import beta, norm
 
-from uavsim.studies.bound import detection_probability, earliest_deadline
 from uavsim.studies.exact import multi_level_window, sliding_window
+from uavsim.studies.neyman_pearson import detection_probability, earliest_deadline
 
 T = np.arange(101) * 1e-3  # s
 G = 9.80665  # m/s²

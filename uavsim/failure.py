@@ -1,6 +1,7 @@
-"""How a part on board fails: what it raises, and answers that are none, end the flight with a reason.
+"""How a part that is not ours fails: what it raises, and answers that are none, end the flight with a reason.
 
-Only parts that are not ours are looked at so (`launch.guarded`, `airspeed.guarded`): ours return, whatever they read.
+Such parts are guarded (`onboard.launch.guarded`, `onboard.airspeed.guarded`, `plants.guarded`). Ours are not: they
+return, whatever they read.
 """
 
 from collections.abc import Iterator
@@ -8,14 +9,14 @@ from contextlib import contextmanager
 from typing import Any
 
 
-class OnboardError(Exception):
-    """A part on board has failed; one line: which, when and how."""
+class PartError(Exception):
+    """A part has failed; one line: which, when and how."""
 
 
-def raised(part: str, t: float, error: BaseException) -> OnboardError:
+def raised(part: str, t: float, error: BaseException) -> PartError:
     """Say that a part raised an exception."""
     said = " ".join(f"{type(error).__name__}: {error}".split())[:300]
-    return OnboardError(f"{part} raised {said} at {t:.4f} s")
+    return PartError(f"{part} raised {said} at {t:.4f} s")
 
 
 @contextmanager

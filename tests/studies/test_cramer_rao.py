@@ -6,7 +6,7 @@ import pytest
 from uavsim.airdata import STANDARD_PRESSURE, STANDARD_TEMPERATURE
 from uavsim.onboard.airspeed import AidedSettings, EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.energy import SEVEN_R
-from uavsim.studies.bounds import AirspeedBound, Courses, Information, Schedule, Start
+from uavsim.studies.cramer_rao import AirspeedBound, Courses, Information, Schedule, Start
 
 NOISE = NoiseModel(total_sd=1.2, static_sd=1.2, temperature_sd=0.0, walk=3e-5, acceleration_sd=0.01)
 

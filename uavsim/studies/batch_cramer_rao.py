@@ -1,7 +1,7 @@
 """Several flights against the bound: the least that their readings allow, and how near the estimator came.
 
-The information is averaged over the courses of the first 60 flights, `studies.bounds`; the schedule of readings is that
-of a whole flight that was kept. Both errors are root mean squares in the bins of the campaign's error traces.
+The information is averaged over the courses of the first 60 flights, `studies.cramer_rao`. The schedule of readings is
+that of a whole flight that was kept. Both errors are root mean squares in the bins of the campaign's error traces.
 """
 
 from dataclasses import dataclass

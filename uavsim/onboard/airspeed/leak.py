@@ -14,7 +14,7 @@ LEAST_SD = 1.0  # m/s, of gusts that are granted where fewer are declared
 FAR, NEAR, WAY = 5.0, 2.5, 10.0  # standard deviations of a gust, twice; m
 
 
-class WanderingTest:
+class LeakTest:
     """The difference G, m/s, and how far it has led.
 
     Parameters

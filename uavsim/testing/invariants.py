@@ -11,18 +11,23 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from hostile import Force, Row, Sample
-
 from uavsim.onboard.airspeed import Estimate, Estimator
 from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.launch import Detector
 from uavsim.onboard.plausible import LEAST_PRESSURE, MOST_PRESSURE
 from uavsim.onboard.stamps import LATEST
+from uavsim.testing.hostile import Force, Row, Sample
 
 REST, PUSH = 3.0, 60.0  # m/s²; of a rail, and of a launch that every detector recognises
 DETECTOR_RECOVERY = 3.0  # s; a mean on the rail that was spoilt is used for 1.5, and a new one takes two blocks of 0.5
 STEPS = 20_000  # readings between two looks at the memory
 LOOSE = 50  # things that may be held more than before: a gap more, a reading more
+
+
+def expect(condition: bool, problem: object) -> None:
+    """Raise AssertionError that says what is wrong, unless the condition holds."""
+    if not condition:
+        raise AssertionError(problem)
 
 
 def footprint(thing: Any) -> int:
@@ -54,18 +59,20 @@ def footprint(thing: Any) -> int:
 class Memory:
     """Looks at a part now and then; `check` at the end."""
 
-    def __init__(self, part: Any) -> None:
-        self.part, self.sizes, self.k = part, [footprint(part)], 0
+    def __init__(self, part: Any, steps: int = STEPS) -> None:
+        self.part, self.sizes, self.k, self.steps = part, [footprint(part)], 0, steps
 
     def look(self) -> None:
+        """Count a reading; look at every so many."""
         self.k += 1
-        if self.k % STEPS == 0:
+        if self.k % self.steps == 0:
             self.sizes.append(footprint(self.part))
 
     def check(self) -> None:
+        """Look once more; AssertionError if it has grown."""
         self.sizes.append(footprint(self.part))
         half = (len(self.sizes) + 1) // 2
-        assert max(self.sizes[half:]) <= max(self.sizes[:half]) + LOOSE, f"memory grows: {self.sizes}"
+        expect(max(self.sizes[half:]) <= max(self.sizes[:half]) + LOOSE, f"memory grows: {self.sizes}")
 
 
 def honest(estimate: Estimate | None, fastest: float) -> None:
@@ -73,14 +80,14 @@ def honest(estimate: Estimate | None, fastest: float) -> None:
     if estimate is None:
         return
     t, speed, sd, raw, total, static, valid, nis_total, nis_static = estimate
-    assert -LATEST < t < LATEST, estimate
-    assert valid is True or valid is False, estimate
-    assert not any(value < 0.0 for value in (speed, sd, raw, nis_total, nis_static)), estimate
+    expect(-LATEST < t < LATEST, estimate)
+    expect(valid is True or valid is False, estimate)
+    expect(not any(value < 0.0 for value in (speed, sd, raw, nis_total, nis_static)), estimate)
     if valid:
-        assert 0.0 <= speed <= fastest, estimate
-        assert 0.0 <= sd <= fastest, estimate
-        assert LEAST_PRESSURE <= static <= MOST_PRESSURE, estimate
-        assert math.isfinite(total), estimate
+        expect(0.0 <= speed <= fastest, estimate)
+        expect(0.0 <= sd <= fastest, estimate)
+        expect(LEAST_PRESSURE <= static <= MOST_PRESSURE, estimate)
+        expect(math.isfinite(total), estimate)
 
 
 def detector_returns(make: Callable[[], Detector], forces: Iterable[Force]) -> int:
@@ -89,10 +96,10 @@ def detector_returns(make: Callable[[], Detector], forces: Iterable[Force]) -> i
     memory, found = Memory(detector), 0
     for t, fx, fy, fz in forces:
         answer = detector.step(t, fx, fy, fz)
-        assert answer is True or answer is False, (answer, t, fx, fy, fz)
+        expect(answer is True or answer is False, (answer, t, fx, fy, fz))
         if answer:
             found += 1
-            assert detector.step(t, fx, fy, fz) is False, "recognised twice"
+            expect(detector.step(t, fx, fy, fz) is False, "recognised twice")
             detector.reset()
         memory.look()
     memory.check()
@@ -128,7 +135,7 @@ def detector_recovers(detector: Detector, nonsense: Iterable[Force], begin: floa
         if detector.step(*reading):
             detector.reset()
     delay = launch_after(detector, begin, DETECTOR_RECOVERY)
-    assert 0.0 <= delay <= latest, f"recognised after {delay} s, not within {latest} s"
+    expect(0.0 <= delay <= latest, f"recognised after {delay} s, not within {latest} s")
 
 
 def estimator_returns(
@@ -161,13 +168,16 @@ def computer_returns(make: Callable[[], FlightComputer], readings: Iterable[Forc
         else:
             honest(computer.air_data(*reading), fastest)
         wing, throttle, pitch, roll, engaged = computer.commands
-        assert wing in (0.0, 1.0), computer.commands
-        assert engaged in (0.0, 1.0), computer.commands
-        assert 0.0 <= throttle <= 1.0, computer.commands
-        assert abs(pitch) <= 1.0, computer.commands
-        assert roll == 0.0, computer.commands
+        expect(wing in (0.0, 1.0), computer.commands)
+        expect(engaged in (0.0, 1.0), computer.commands)
+        expect(0.0 <= throttle <= 1.0, computer.commands)
+        expect(abs(pitch) <= 1.0, computer.commands)
+        expect(roll == 0.0, computer.commands)
         if computer.events:
-            assert all(-LATEST < event["t"] < LATEST for event in computer.events)
+            expect(
+                all(-LATEST < event["t"] < LATEST for event in computer.events),
+                'all(-LATEST < event["t"] < LATEST for event in computer.events)',
+            )
             names |= {event["event"] for event in computer.events}
             computer.events.clear()
         memory.look()
@@ -220,8 +230,8 @@ def estimator_recovers(
             if estimate is not None:
                 told += 1
                 _, speed, sd, *_, valid, _, _ = estimate
-                assert valid, f"not valid at {t:.3f} s: {estimate}"
-                assert abs(speed - truth) <= max(1.0, 4.0 * sd), f"{speed} ± {sd} at {t:.3f} s, truth {truth}"
-    assert not waits, "the stream has no launch"
-    assert read > 0, "the stream ends too soon"
-    assert told >= 0.9 * read, f"{told} estimates of {read} readings"
+                expect(valid, f"not valid at {t:.3f} s: {estimate}")
+                expect(abs(speed - truth) <= max(1.0, 4.0 * sd), f"{speed} ± {sd} at {t:.3f} s, truth {truth}")
+    expect(not waits, "the stream has no launch")
+    expect(read > 0, "the stream ends too soon")
+    expect(told >= 0.9 * read, f"{told} estimates of {read} readings")

@@ -64,6 +64,7 @@ class Clock:
         self.draw, self.period, self.t = draw, 1.0 / rate, 0.0
 
     def __call__(self) -> float:
+        """Return the time, s."""
         self.t += self.period * (1.0 + 0.2 * (self.draw.random() - 0.5))
         chance = self.draw.random()
         if chance < 5e-5:
@@ -80,6 +81,7 @@ class Rail:
         self.draw, self.level, self.left, self.speed = draw, 3.0, 0, 0.0
 
     def __call__(self) -> list[float]:
+        """Return the force, m/s²."""
         draw = self.draw
         if not self.left:
             self.level = draw.choice((3.0, 3.0, 3.0, -20.0, 40.0, 60.0, 150.0))

@@ -1,6 +1,6 @@
 """Flights drawn from the aided filter's own model: whether the filter reaches the bound and knows its own error.
 
-Every run draws bias, wind, gust, climb, tare and noise as `onboard.airspeed.energy` believes them,
+Every run draws bias, wind, gust, climb, tare and noise as `onboard.airspeed.energy_model` has them,
 
     V̇ = f_x − b − s + gust,    ṗ = −ρ V s,    ḃ = −b/τ_b + noise,    ṡ = −s/τ_s + noise
 
@@ -24,11 +24,12 @@ from numpy.typing import NDArray
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_PRESSURE, STANDARD_TEMPERATURE
 from uavsim.consistency import Consistency, judge
 from uavsim.onboard.airspeed import AidedFilter, EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.aided import SLOWEST
-from uavsim.onboard.airspeed.energy import RAIL_SHARE, SEVEN_R
+from uavsim.onboard.airspeed.air import SLOWEST
+from uavsim.onboard.airspeed.energy import SEVEN_R
+from uavsim.onboard.airspeed.energy_model import RAIL_SHARE, step, total_pressure
 from uavsim.onboard.airspeed.frozen import TURNED
 from uavsim.onboard.airspeed.rest_force import WANDER
-from uavsim.studies.bounds import AirspeedBound, Courses, Schedule, Start
+from uavsim.studies.cramer_rao import AirspeedBound, Courses, Schedule, Start
 
 Array = NDArray[np.float64]
 
@@ -144,7 +145,7 @@ def draw(settings: MatchedSettings) -> Drawn:
     pressed = np.column_stack([courses.mean(force, end - window, end) for end in schedule.total_end.tolist()])
     k = settings.acceleration_sd * generator.standard_normal((settings.runs, 1))
     walk = np.cumsum(noise.walk / sqrt(rate) * generator.standard_normal(shape), axis=1)
-    total = p_t * (1.0 + v**2 / (SEVEN_R * STANDARD_TEMPERATURE)) ** 3.5 + k * pressed + walk
+    total = total_pressure(v, p_t, walk, k, pushed=pressed, heat=SEVEN_R * STANDARD_TEMPERATURE)
     total += 30.0 + settings.mode.noise * generator.standard_normal(shape)
     return Drawn(courses, schedule, read, total, p_s + settings.mode.noise * generator.standard_normal(shape))
 
@@ -187,18 +188,18 @@ def _fly(
             continue
         railed = push > aided.on_rail
         w = generator.standard_normal((4, m))
-        change = STEP * (f - bias - slope) + 0.5 * STEP * (later - push)  # of the push the trapezoid
+        gained = STEP * f + 0.5 * STEP * (later - push)  # of the push the trapezoid
         variance = gust * np.maximum(v, SLOWEST)
-        p = p - p / gas * (v + 0.5 * change) * slope * STEP + aided.static_walk * sqrt(STEP) * w[0]
-        v = v + change + np.sqrt(variance) * w[1]
-        nominal += STEP * command
         share = RAIL_SHARE if railed else 1.0
         wander = share * 2.0 * STEP / aided.bias_time * aided.bias_sd**2
         wander += noise.accelerometer_scale_sd**2 * abs(later**2 - push**2)
+        keep, stay = (1.0, 1.0) if railed else (1.0 - STEP / aided.bias_time, 1.0 - STEP / aided.slope_time)
+        v, bias, p, slope = step(v, bias, p, slope, dt=STEP, gained=gained, density=p / gas, keep=keep, stay=stay)
+        p = p + aided.static_walk * sqrt(STEP) * w[0]
+        v = v + np.sqrt(variance) * w[1]
+        nominal += STEP * command
         bias = bias + sqrt(wander) * w[2]
         slope = slope + sqrt(share * STEP) * aided.slope_rate * w[3]
-        if not railed:
-            bias, slope = bias - bias * STEP / aided.bias_time, slope - slope * STEP / aided.slope_time
     return speeds, slopes, statics, forces, reads
 
 

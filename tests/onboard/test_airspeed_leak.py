@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from uavsim.onboard.airspeed.wandering import WAY, WanderingTest
+from uavsim.onboard.airspeed.leak import WAY, LeakTest
 
 DT, SPEED, LENGTH = 0.01, 32.0, 200.0
 
 
 def way(changes, sd=1.0):
     """D after each change of the airspeed, m/s, of which the force gave nothing."""
-    test = WanderingTest(sd, LENGTH)
+    test = LeakTest(sd, LENGTH)
     rows = []
     for change in changes:
         told = test.add(SPEED, change, 0.0, DT)
@@ -66,6 +66,6 @@ def test_what_a_gust_may_be_is_near():
 
 
 def test_what_the_force_gave_is_no_gust():
-    test = WanderingTest(1.0, LENGTH)
+    test = LeakTest(1.0, LENGTH)
     assert not any(test.add(SPEED, 0.1, 0.1, DT) for _ in range(3000))
     assert test.way == 0.0

@@ -12,17 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uavsim.onboard.airspeed.aided import AidedFilter
-from uavsim.onboard.airspeed.energy import EnergyFilter
-
-Array = NDArray[np.float64]
-STATES = ("v", "b", "p", "s", "d", "k")
-NAMES = {(i, j): STATES[i] + STATES[j] for i in range(6) for j in range(i, 6)}
+from references.gaussian import Array, MatrixFilter
+from uavsim.onboard.airspeed import AidedFilter
 
 
-class _Recorded(EnergyFilter):
+class _Recorded(MatrixFilter):
     """The filter's core, which keeps what every interval started from and ended with."""
 
     __slots__ = ("intervals",)
@@ -31,21 +26,10 @@ class _Recorded(EnergyFilter):
         super().__init__(**settings)
         self.intervals: list[tuple[Array, Array, Array, Array, Array]] = []
 
-    def gaussian(self) -> tuple[Array, Array]:
-        """Return mean and covariance now."""
-        p = np.empty((6, 6))
-        for (i, j), name in NAMES.items():
-            p[i, j] = p[j, i] = getattr(self, name)
-        return np.array([getattr(self, name) for name in STATES]), p
-
     def predict(self, dt: float, gained: float, variance: float, density: float, railed: bool) -> None:
-        """Advance; see `EnergyFilter`."""
+        """Advance; see `EnergyModel`."""
         x, p = self.gaussian()
-        keep, stay = (1.0, 1.0) if railed else (1.0 - dt / self._bias_time, 1.0 - dt / self._slope_time)
-        f = np.diag([1.0, keep, 1.0, stay, 1.0, 1.0])
-        f[0, 1] = f[0, 3] = -dt
-        f[2, 0] = -density * self.s * dt
-        f[2, 3] = -density * (self.v + 0.5 * (gained - dt * (self.b + self.s))) * dt
+        f = self.jacobian(dt, gained, density, railed)
         super().predict(dt, gained, variance, density, railed)
         self.intervals.append((x, p, f, *self.gaussian()))
 
@@ -60,13 +44,9 @@ class RecordedFilter(AidedFilter):
         super().__init__(*arguments)
         self._ends: list[float] = []
 
-    def _advance(self, to: float) -> None:
-        core = self.energy
-        assert isinstance(core, _Recorded)
-        before = len(core.intervals)
-        super()._advance(to)
-        if len(core.intervals) > before:
-            self._ends.append(to)
+    def _go(self, to: float, dt: float) -> tuple[float, float]:
+        self._ends.append(to)
+        return super()._go(to, dt)
 
     def launched(self, t: float) -> None:
         """Start; see `AidedFilter`."""

@@ -1,0 +1,1 @@
+"""The aided airspeed filter's model in symbols, and the code that is written from it."""

@@ -1,0 +1,80 @@
+"""The air that the aided filter flies in: its density, its gusts, and airspeed from a pressure ratio.
+
+The temperature is the thermometer's. The density is that of dry air at the filter's own static pressure, ρ = p/(R T).
+"""
+
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_TEMPERATURE
+from uavsim.onboard.airspeed.energy import SEVEN_R
+from uavsim.onboard.airspeed.energy_model import isentropic_speed
+from uavsim.onboard.airspeed.gust import gust_density
+from uavsim.onboard.airspeed.settings import AidedSettings
+
+GRAVITY = 9.80665  # m/s², ISO 80000-3
+SLOWEST = 1.0  # m/s; below it the gust's correlation time is that of this airspeed
+
+
+class Air:
+    """What is known of it.
+
+    Parameters
+    ----------
+    aided : AidedSettings
+        What is believed of the gusts.
+    calibration : float
+        Factor between the airspeed of the pressures and the one told.
+
+    Attributes
+    ----------
+    temperature : float
+        K.
+    measured : bool
+        Whether a thermometer has told it; else it is that of the standard atmosphere.
+    gas, heat : float
+        R T and 7 R T, m²/s²; the second has the square of the calibration in it.
+    density : float
+        ρ, kg/m³.
+    gust : float
+        2 σ²/L of the gusts, m/s².
+    ground : float
+        Static pressure at the launch, Pa; NaN while it is not known.
+    """
+
+    __slots__ = (
+        "_aided",
+        "_calibration",
+        "_falls",
+        "density",
+        "gas",
+        "ground",
+        "gust",
+        "heat",
+        "measured",
+        "temperature",
+    )
+
+    def __init__(self, aided: AidedSettings, calibration: float) -> None:
+        self._aided, self._calibration = aided, calibration
+        self._falls = aided.gust_height > 0.0 and aided.gust_sd > 0.0
+        self.gust = gust_density(aided, 0.0)
+        self.ground = self.density = float("nan")
+        self.begin(0.0)
+
+    def begin(self, temperature: float) -> None:
+        """Begin with a temperature, K, or without one: 0."""
+        self.measured = temperature > 0.0
+        self.warm(temperature if self.measured else STANDARD_TEMPERATURE)
+
+    def warm(self, temperature: float) -> None:
+        """Take a temperature, K."""
+        self.temperature, self.gas = temperature, GAS_CONSTANT_DRY_AIR * temperature
+        self.heat = SEVEN_R * temperature * self._calibration * self._calibration
+
+    def at(self, static: float) -> None:
+        """Take the static pressure of the moment, Pa: the density and, by the height, the gusts follow."""
+        self.density = static / self.gas
+        if self._falls:
+            self.gust = gust_density(self._aided, (self.ground - static) / (GRAVITY * self.density))
+
+    def speed(self, total: float, static: float) -> float:
+        """Return the airspeed of two pressures, Pa; 0 if the total pressure is not above the static one."""
+        return isentropic_speed(max(0.0, (total - static) / static), self.heat)

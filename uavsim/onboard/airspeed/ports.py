@@ -1,0 +1,191 @@
+"""The two ports in flight: what was read of them last, whether one is to blame, and what becomes of it.
+
+Each port has its own watch (`watch`). What the filter has taken is kept here until the ports are judged, which waits
+until the estimate has been told. A static port that is wrong makes the total pressure seem wrong, too. Which of the two
+tests fires first is chance, so the rules below say which port is flagged:
+
+* The total port's test has fired and the static port is suspect: the static port is flagged. Its own test goes by f_z
+  alone, and a total pressure that is wrong does not move it.
+* The total port's test has fired, and the static port's readings repeat themselves, or the total pressure moves and
+  only does not fit: nothing is flagged yet.
+* In still air, the total port seems shut and the static port is doubtful: it waits for the static port's test.
+* Else the total port is flagged.
+"""
+
+from collections.abc import Iterable
+
+from uavsim.onboard.airspeed.air import GRAVITY, SLOWEST, Air
+from uavsim.onboard.airspeed.energy import EnergyFilter
+from uavsim.onboard.airspeed.readmission import longest_row
+from uavsim.onboard.airspeed.settings import AidedSettings
+from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
+
+MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go, so that memory is constant
+PERSISTENT = 5  # static pressures in a row beyond the gate: no longer spikes, but a port or a filter that is wrong. By
+# hand, as `stamps.AGREED`; docs/airspeed.md, "What no reading can do", holds the check
+
+News = tuple[float, str, str, str]
+"""Time, s, event, channel and kind."""
+
+
+class Ports:
+    """Both ports of a flight.
+
+    Parameters
+    ----------
+    aided : AidedSettings
+        What is believed of the air.
+    air : Air
+        Of the filter; it changes as the flight goes on.
+    total_variance, static_variance : float
+        Of a reading's noise, Pa².
+    walk : float
+        Random walk of the pair's difference, Pa/√s.
+
+    Attributes
+    ----------
+    news : list of tuple
+        What was flagged and taken back; whoever reads them clears the list.
+    total, static : TotalWatch, StaticWatch
+        The watch over each port.
+    seen_total : tuple or None
+        A total pressure that the filter has taken and nobody has judged yet: tared, Pa, and its NIS.
+    seen_static : tuple or None
+        A static pressure so: Pa, its instant, s, and the mean of −f_z since the one before, m/s².
+    misses : int
+        How many static pressures in a row were beyond the gate.
+    torn : bool
+        Whether readings of specific force have been missing since the ports were judged last.
+    """
+
+    __slots__ = (
+        "_aided", "_air", "_lift", "_static_variance", "_total_variance", "_usual", "_walk", "misses", "news",
+        "seen_static", "seen_total", "static", "torn", "total",
+    )  # fmt: skip
+
+    def __init__(
+        self, aided: AidedSettings, air: Air, total_variance: float, static_variance: float, walk: float
+    ) -> None:
+        self._aided, self._air, self._walk = aided, air, walk
+        self._total_variance, self._static_variance = total_variance, static_variance
+        self._usual = [0, 0]
+        self.news: list[News] = []
+        self.begin(())
+
+    def begin(self, rows: Iterable[tuple[float, ...]]) -> None:
+        """Believe both ports, and begin to watch them.
+
+        Parameters
+        ----------
+        rows : iterable of tuple
+            Readings of the head on the rail, which show how the live sensors repeat themselves; none: as known before.
+        """
+        rows = list(rows)
+        if rows:
+            self._usual = [longest_row(row[i] for row in rows) for i in (1, 2)]
+        self.total = TotalWatch(self._aided, self._total_variance, self._walk, self._usual[0])
+        self.static = StaticWatch(self._static_variance, self._walk, self._usual[1])
+        self._lift, self.misses, self.torn = GRAVITY, 0, False
+        self.forget_seen()
+
+    def forget_seen(self) -> None:
+        """Judge nothing of what was read last."""
+        self.seen_total: tuple[float, float] | None = None
+        self.seen_static: tuple[float, float, float] | None = None
+
+    def tell(self, t: float, event: str, channel: str, kind: str = "") -> None:
+        """Put something into the news."""
+        self.news.append((t, event, channel, kind))
+        if len(self.news) > MOST_NEWS:
+            del self.news[0]
+
+    def give_up(self, t: float, kind: str) -> None:
+        """Be told at `t`, s, that the filter has ended: flags of ports end with it."""
+        self.forget_seen()
+        self.tell(t, "airspeed_fault", "both", kind)
+        for watch, channel in ((self.total, "total"), (self.static, "static")):
+            if watch.faulty:
+                self.tell(t, "airspeed_recovered", channel)
+
+    # -- blame ---------------------------------------------------------------------------------------------------------
+
+    def judge(self, t: float, energy: EnergyFilter, time: float, gained: float) -> None:
+        """Judge what was seen last; `time`, s, and ∫ f_x dt, m/s, are the filter's, `t` that of the reading, s."""
+        if self.torn:  # what the force has done to the pressures meanwhile is not known
+            self.torn = False
+            self.total.pause()
+        if self.seen_static is not None:
+            reading, at, lift = self.seen_static
+            self.seen_static = None
+            if lift == lift:
+                self._lift = lift
+            kind = self.static.take(at, reading, lift, self._air.density)
+            if kind or self.misses >= PERSISTENT:
+                self._flag_static(t, energy, kind or "jump")
+        if self.seen_total is not None:
+            tared, nis = self.seen_total
+            self.seen_total = None
+            if self.static.faulty:
+                return
+            air = self._air
+            kind = self.total.take(energy, time, gained, self._lift, tared, nis, air.density, air.gust)
+            if kind:
+                self._blame(t, energy, kind)
+
+    def jumped(self, t: float, energy: EnergyFilter, total: bool, static: bool) -> None:
+        """Flag the port whose pressure has jumped and stays there."""
+        if static and not self.static.faulty:
+            self._flag_static(t, energy, "jump")
+        if total and not (self.total.faulty or self.static.faulty):
+            self._flag_total(t, energy, "jump")
+
+    def _blame(self, t: float, energy: EnergyFilter, kind: str) -> None:
+        """Flag the port that is to blame for a total pressure in which something seems wrong; see the module."""
+        if kind != "stuck" and self.static.suspect:
+            self._flag_static(t, energy, "frozen")
+        elif kind == "unfit" or self.static.repeating:
+            return
+        elif kind != "frozen" or not (self.static.doubtful and self.total.port.unsure):
+            self._flag_total(t, energy, kind)
+
+    def _flag_total(self, t: float, energy: EnergyFilter, kind: str) -> None:
+        self.total.flag(kind, energy, self._air.density, self._air.gust)
+        self.tell(t, "airspeed_fault", "total", kind)
+
+    def _flag_static(self, t: float, energy: EnergyFilter, kind: str) -> None:
+        self.static.flag(kind, energy, self._air.density, self.total.port.frozen.lost)
+        self.misses = 0
+        self.total.port.restart()
+        self.tell(t, "airspeed_fault", "static", kind)
+
+    # -- the way back --------------------------------------------------------------------------------------------------
+
+    def hear_total(
+        self, t: float, energy: EnergyFilter, end: float, reading: float, tared: float, variance: float
+    ) -> None:
+        """Compare a flagged total port with the filter that coasts; take it back when they have agreed for long enough.
+
+        Parameters
+        ----------
+        t : float
+            Time of the reading, s.
+        energy : EnergyFilter
+            The filter that coasts.
+        end : float
+            End of the conversion, s.
+        reading, tared, variance : float
+            The pressure as it came, and tared, Pa; the variance of its noise, Pa².
+        """
+        speed = self._air.speed(tared, energy.p)
+        slope = self._air.density * (speed if speed > SLOWEST else SLOWEST)
+        difference = speed - energy.v
+        spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
+        if self.total.coast(reading, tared, difference, spread, end):
+            energy.widen_speed(difference * difference)
+            self.tell(t, "airspeed_recovered", "total")
+
+    def hear_static(self, t: float, energy: EnergyFilter, at: float, reading: float, difference: float) -> None:
+        """Compare a flagged static port in the same way: its reading of an instant, s, and how far off it is, Pa."""
+        if self.static.coast(at, reading, difference, energy.pp + self._static_variance):
+            energy.widen_static(difference * difference)
+            self.tell(t, "airspeed_recovered", "static")
