@@ -231,7 +231,7 @@ def test_few_flights_come_with_the_chance_that_they_leave(
 ) -> None:
     """Six flights: χ²_6/6 is within 0.206 and 2.408 in 95 % (tables of χ²), an RMSE over the bound within its roots."""
     found = {"after": AgainstBound(0.040, 0.051, 0.78)}
-    monkeypatch.setattr("uavsim.studies.batch_cramer_rao.against_bound", lambda _: found)
+    monkeypatch.setattr("uavsim.views.batch_summary.against_bound", lambda _: found)
     terminal.print_batch(dataclasses.replace(batch(6), traces=[None] * 6))  # type: ignore[list-item]
     out = capsys.readouterr().out
     assert "RMSE over √PCRB later: 0.040 / 0.051 m/s = 0.78" in out

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from uavsim.cli.common import Bar, Plugin, plug_in, user_input
+from uavsim.cli.printed import Json, document
 
 
 def bench(
@@ -14,6 +15,7 @@ def bench(
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the scenario.")
     ] = None,
     plugin: Plugin = None,
+    as_json: Json = False,
 ) -> None:
     """Measure what a step in the loop costs, over bare JSBSim.
 
@@ -27,7 +29,7 @@ def bench(
     from uavsim.failure import PartError
     from uavsim.scenario import load_scenario
     from uavsim.studies.cost import measure, measure_onboard
-    from uavsim.views import terminal
+    from uavsim.views import documents, terminal
 
     plug_in(plugin)
     with user_input(), Bar("measuring") as bar:
@@ -37,4 +39,7 @@ def bench(
             onboard = measure_onboard(loaded)
         except PartError as failure:
             raise ValueError(failure) from None
-    terminal.print_cost(cost, onboard)
+    if as_json:
+        document(documents.cost(cost, onboard))
+    else:
+        terminal.print_cost(cost, onboard)

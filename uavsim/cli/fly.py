@@ -25,6 +25,7 @@ from uavsim.cli.common import (
     plug_in,
     user_input,
 )
+from uavsim.cli.printed import Json, document
 from uavsim.folders import Place
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ def fly(
     plugin: Plugin = None,
     no_plots: NoPlots = False,
     overwrite: Overwrite = False,
+    as_json: Json = False,
 ) -> None:
     """Fly a scenario, print its score, and write its folder.
 
@@ -76,9 +78,9 @@ def fly(
     ready = partial(_ready, loaded, settings or ())
     if numbers:
         given = [scenario, *(part for change in settings or () for part in ("--set", change))]
-        _fly_many(loaded, numbers, place, ready, plots=not no_plots, given=given)
+        _fly_many(loaded, numbers, place, ready, plots=not no_plots, given=given, as_json=as_json)
     else:
-        _fly_one(place, ready, plots=not no_plots)
+        _fly_one(place, ready, plots=not no_plots, as_json=as_json)
 
 
 def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation":
@@ -90,14 +92,17 @@ def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation"
         return Cosimulation(scenario)
 
 
-def _fly_one(place: Held, ready: Ready, *, plots: bool) -> None:
-    from uavsim.views import terminal
+def _fly_one(place: Held, ready: Ready, *, plots: bool, as_json: bool) -> None:
+    from uavsim.views import documents, terminal
 
     with place as held:  # before anything is flown in vain
         flight = _flown(ready())
         flight.write(held.folder, plotter(flight) if plots else None)
-    terminal.print_score(flight)
-    terminal.say(f"written to {held.target}")
+    if as_json:
+        document(documents.flight(flight, held.target))
+    else:
+        terminal.print_score(flight)
+        terminal.say(f"written to {held.target}")
     leave(as_expected(flight.score))
 
 
@@ -117,11 +122,18 @@ def _flown(simulation: "Cosimulation") -> "Flight":
 
 
 def _fly_many(
-    scenario: "Scenario", numbers: list[int], place: Held, ready: Ready, *, plots: bool, given: list[str]
+    scenario: "Scenario",
+    numbers: list[int],
+    place: Held,
+    ready: Ready,
+    *,
+    plots: bool,
+    given: list[str],
+    as_json: bool,
 ) -> None:
     from uavsim.studies.batch import fly_seeds
     from uavsim.views import batch as view
-    from uavsim.views import terminal
+    from uavsim.views import documents, terminal
 
     with place as held:
         ready()  # only to see whether it can be flown
@@ -132,8 +144,11 @@ def _fly_many(
         if not len(flown.runs):
             raise KeyboardInterrupt if not flown.lost else WrongInputError(f"no flight is finished: {left}")
         drawn = _closed(record, flown, plots=plots)
-    terminal.print_batch(flown)
-    terminal.say(f"written to {held.target}")
+    if as_json:
+        document(documents.batch(flown, held.target))
+    else:
+        terminal.print_batch(flown)
+        terminal.say(f"written to {held.target}")
     if left:
         typer.echo(f"unfinished: {left}", err=True)
         leave(well=False)

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from uavsim.cli.common import NoPlots, Out, Overwrite, Plugin, folder, plotter, plug_in, user_input
+from uavsim.cli.printed import Json, document
 
 
 def replay(
@@ -22,6 +23,7 @@ def replay(
     plugin: Plugin = None,
     no_plots: NoPlots = False,
     overwrite: Overwrite = False,
+    as_json: Json = False,
 ) -> None:
     """Run the onboard code over a flight's readings or a log.
 
@@ -37,9 +39,9 @@ def replay(
         if mapping is not None or settings:
             option = "--map" if mapping is not None else "--set"
             raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
-        _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite)
+        _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
     else:
-        _replay_log(logs, mapping, settings or [], out, plots=not no_plots, overwrite=overwrite)
+        _replay_log(logs, mapping, settings or [], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
 
 
 def _is_flight(path: Path) -> bool:
@@ -47,11 +49,11 @@ def _is_flight(path: Path) -> bool:
     return path.is_dir() or not (path.exists() or path.suffix)
 
 
-def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bool) -> None:
+def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bool, as_json: bool) -> None:
     from uavsim.cosim import replay as replay_flight
     from uavsim.flight import UNITS, load
     from uavsim.scenario import Scenario
-    from uavsim.views import terminal
+    from uavsim.views import documents, terminal
 
     name = f"{Path(os.path.realpath(flight)).name}-replay"  # of what a link leads to, unless it leads in circles
     with user_input():
@@ -65,17 +67,27 @@ def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bo
     with folder(out, name, overwrite=overwrite) as place:  # before anything is replayed in vain
         again = replay_flight(recorded)
         again.write(place.folder, plotter(again) if plots else None)
-    terminal.print_score(again)
-    terminal.say(f"written to {place.target}")
+    if as_json:
+        document(documents.flight(again, place.target))
+    else:
+        terminal.print_score(again)
+        terminal.say(f"written to {place.target}")
 
 
 def _replay_log(
-    logs: list[Path], mapping: str | None, settings: list[str], out: Path | None, *, plots: bool, overwrite: bool
+    logs: list[Path],
+    mapping: str | None,
+    settings: list[str],
+    out: Path | None,
+    *,
+    plots: bool,
+    overwrite: bool,
+    as_json: bool,
 ) -> None:
     from uavsim.logs import read_log, replay_log
     from uavsim.scenario import load_scenario
+    from uavsim.views import documents, terminal
     from uavsim.views import recording as view
-    from uavsim.views import terminal
 
     other = [given for given in settings if not given.strip().startswith("detector.")]
     if other:
@@ -91,6 +103,9 @@ def _replay_log(
         with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
             replayed = replay_log(recording, detector)
         replayed.write(place.folder, draw if plots else None)
+    if as_json:
+        document(documents.flight(replayed, place.target))
+        return
     for line in view.lines(replayed):
         terminal.say(line)
     terminal.say(f"written to {place.target}")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, Plugin, finite, folder, plug_in, user_input
+from uavsim.cli.printed import Json, document, remark
 
 if TYPE_CHECKING:
     from uavsim.onboard.launch import DetectorSettings
@@ -33,6 +34,7 @@ def roc(
     out: Out = None,
     overwrite: Overwrite = False,
     no_plots: NoPlots = False,
+    as_json: Json = False,
 ) -> None:
     """Draw launch detectors' operating curves.
 
@@ -49,9 +51,9 @@ def roc(
     """
     from uavsim.onboard.launch import KINDS, DetectorSettings
     from uavsim.studies import operating, reach
+    from uavsim.views import documents, terminal
     from uavsim.views import operating as view
     from uavsim.views import operating_tables as tables
-    from uavsim.views import terminal
 
     plug_in(plugin)
     kinds = kinds_of(detectors)
@@ -69,7 +71,7 @@ def roc(
     )
     with folder(out, f"roc-{seed}", overwrite=overwrite) as place:  # before anything is computed in vain
         if left_out := reach.told(asked, work, reach.why(plain)):
-            terminal.say(left_out)
+            remark(left_out, as_json=as_json)
         with Bar("trying launch detectors") as bar, user_input():
             found = operating.operate(
                 settings,
@@ -91,6 +93,9 @@ def roc(
                     progress=lambda share: bar.show(SWEEP + (1.0 - SWEEP) * share),
                 )
         view.save(found, table, place.folder, plots=not no_plots)
+    if as_json:
+        document(documents.operating(found, table, place.target))
+        return
     tables.print_operating(found)
     if table is not None:
         tables.print_cells(table, DetectorSettings().kind, [kind for kind in kinds if not KINDS[kind].ours])

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, finite, folder, user_input
+from uavsim.cli.printed import Json, document
 
 
 def sensors(
@@ -33,6 +34,7 @@ def sensors(
     out: Out = None,
     overwrite: Overwrite = False,
     no_plots: NoPlots = False,
+    as_json: Json = False,
 ) -> None:
     """List the sensor presets, or put one on a bench.
 
@@ -43,14 +45,17 @@ def sensors(
 
     Example: uavsim sensors adxl345 --hours 1 --compare log.csv --map t=time,fx=ax,fy=ay,fz=az
     """
-    from uavsim.views import datasheets, terminal
+    from uavsim.views import datasheets, documents, terminal
 
     if name is None:
         if compare is not None:
             raise typer.BadParameter(
                 "name the part to compare with, as in uavsim sensors bmp390", param_hint="--compare"
             )
-        datasheets.print_presets()
+        if as_json:
+            document(documents.presets())
+        else:
+            datasheets.print_presets()
         return
     from sensors.bench import UNITS, on_bench
     from sensors.choice import choose
@@ -68,9 +73,13 @@ def sensors(
         log = None if compare is None else read_log(compare, part, mapping)
 
     with folder(out, f"sensors-{part.name}", overwrite=overwrite) as place:  # before anything is simulated in vain
-        datasheets.print_preset(name)
+        if not as_json:
+            datasheets.print_preset(name)
         with Bar(f"simulating {hours:g} h") as bar:
             measured = put_on_bench(part, hours=hours, seed=seed, unit=which, log=log, progress=bar.show)
         save_bench(measured, place.folder, plots=not no_plots)
+    if as_json:
+        document(documents.part(name, measured, place.target))
+        return
     datasheets.print_bench(measured)
     terminal.say(f"written to {place.target}")

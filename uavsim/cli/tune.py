@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from uavsim.cli.common import LARGEST_SEED, Bar, Overwrite, Plugin, finite, folder, plug_in, user_input
+from uavsim.cli.printed import Json, document, remark
 from uavsim.cli.roc import kind_of, load
 from uavsim.files import write_toml
 from uavsim.folders import FilePlace, Place
@@ -24,6 +25,7 @@ def tune(
     plugin: Plugin = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder, or file that ends in .toml, to write.")] = None,
     overwrite: Overwrite = False,
+    as_json: Json = False,
 ) -> None:
     """Find a launch detector's settings.
 
@@ -35,7 +37,7 @@ def tune(
     Example: uavsim tune catapult --out tuned.toml && uavsim fly tuned.toml
     """
     from uavsim.studies import reach, tuning
-    from uavsim.views import terminal
+    from uavsim.views import documents, terminal
     from uavsim.views import tuning as view
 
     plug_in(plugin)
@@ -49,7 +51,7 @@ def tune(
     with place as held:  # before anything is computed in vain
         rate = loaded.accelerometer.description().rate
         if plain := reach.plain([tuning.own_keys(loaded.detector, kind)], rate):
-            terminal.say(reach.tuning_told(hours, rate, reach.why(plain)))
+            remark(reach.tuning_told(hours, rate, reach.why(plain)), as_json=as_json)
         with Bar(f"tuning {kind or loaded.detector.kind}") as bar, user_input():
             found = tuning.tune(
                 loaded,
@@ -64,5 +66,8 @@ def tune(
             write_toml(held.folder / held.target.name, found.scenario.to_dict())
         else:
             view.save(found, held.folder)
+    if as_json:
+        document(documents.tuned(found, held.target))
+        return
     view.print_tuned(found)
     terminal.say(f"written to {held.target}")

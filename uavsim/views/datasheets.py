@@ -73,14 +73,20 @@ _SCALES = {"m/s²": (1e3, "mm/s²"), "Pa": (1.0, "Pa")}  # how a unit is printed
 # -- presets ---------------------------------------------------------------------------------------------------------
 
 
-def print_presets() -> None:
-    """List the sensor presets, a line each."""
+def preset_rows() -> list[dict[str, str]]:
+    """Name, kind and part of each sensor preset."""
     from sensors import presets
 
-    width = max(map(len, presets()))
-    for name in presets():
-        sheet = sheet_of(name)
-        say(f"{name:<{width}}  {sheet['kind']:<13}  {sheet['part']}")
+    sheets = {name: sheet_of(name) for name in presets()}
+    return [{"name": name, "kind": sheet["kind"], "part": sheet["part"]} for name, sheet in sheets.items()]
+
+
+def print_presets() -> None:
+    """List the sensor presets, a line each."""
+    rows = preset_rows()
+    width = max(len(row["name"]) for row in rows)
+    for row in rows:
+        say(f"{row['name']:<{width}}  {row['kind']:<13}  {row['part']}")
 
 
 def print_preset(name: str) -> None:

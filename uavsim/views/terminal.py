@@ -26,10 +26,9 @@ if TYPE_CHECKING:
     from uavsim.scenario import Scenario
     from uavsim.studies.batch import Batch
     from uavsim.studies.cost import Cost, OnboardCost
-    from uavsim.studies.quantiles import QuantileBand
 
 NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
-QUANTILES = {"5 %": 0.05, "median": 0.50, "95 %": 0.95}
+QUANTILES = {"5 %": "p05", "median": "median", "95 %": "p95"}  # of `batch_summary`
 
 
 class _Console(Console):
@@ -201,37 +200,38 @@ def _wanted(low: float | None, high: float | None) -> str:
 def print_batch(flown: "Batch") -> None:
     """Print what several flights gave: outcomes, quantiles of latency and error, what was not as it should be."""
     from uavsim.consistency import mean_band
-    from uavsim.studies.batch_cramer_rao import against_bound
+    from uavsim.views.batch_summary import summary
 
-    console, runs = _console(), flown.runs
-    summary = ", ".join(f"{count} {name}" for name, count in runs["outcome"].value_counts().items())
-    false = int(runs["launch.false_detections"].sum())
-    unmet = int((~runs["requirements.met"].astype(bool)).sum())
-    _print(console, words("\n", (flown.scenario.name, "bold"), f", {_flights(len(runs))}: {summary}\n"))
-    table = _quantile_table(flown)
+    console, found = _console(), summary(flown)
+    outcomes = ", ".join(f"{count} {name}" for name, count in found["outcomes"].items())
+    _print(console, words("\n", (flown.scenario.name, "bold"), f", {_flights(found['flights'])}: {outcomes}\n"))
+    table = _quantile_table(found["quantiles"])
     if table.row_count:
         _print(console, table, "")
     wrong = told(flown.scenario, flown.scenario.duration)
     if wrong:
         _print(console, f"Set to go wrong: {wrong}; √PCRB knows of no fault")
-    bounds = against_bound(flown)
-    for name, found in bounds.items():
+    for name, error in found["airspeed_bound"].items():
         when = "from 0.1 to 2 s after launch" if name == "first_2_s" else "later"
-        _print(console, f"RMSE over √PCRB {when}: {found.rmse:.3f} / {found.bound:.3f} m/s = {found.ratio:.2f}")
-    if bounds:
+        ratio = f"{error['rmse']:.3f} / {error['bound']:.3f} m/s = {error['ratio']:.2f}"
+        _print(console, f"RMSE over √PCRB {when}: {ratio}")
+    if found["airspeed_bound"]:
         low, high = (bound**0.5 for bound in mean_band(len(flown.traces)))
         flights = f"{_flights(len(flown.traces))} at the bound"
         _print(console, f"  {flights}: 95 % within {low:.2f} … {high:.2f} (error constant over a flight)")
-    _print(console, f"False detections before release: {false}", f"Flights with a requirement that is not met: {unmet}")
+    _print(
+        console,
+        f"False detections before release: {found['false_detections']}",
+        f"Flights with a requirement that is not met: {found['requirements_unmet']}",
+    )
 
 
 def _flights(number: int) -> str:
     return f"{number} flight" if number == 1 else f"{number} flights"
 
 
-def _quantile_table(flown: "Batch") -> Table:
-    from uavsim.studies.quantiles import quantile_band
-
+def _quantile_table(quantiles: dict[str, Any]) -> Table:
+    """Return the figures that there are, as `batch_summary` has them, in the units of the table."""
     table = _table(("Quantiles and 95 % bands", "least", *QUANTILES, "greatest"))
     for label, key, factor, digits in (
         ("latency, ms", "launch.latency", 1e3, 1),
@@ -243,21 +243,30 @@ def _quantile_table(flown: "Batch") -> Table:
         ("  in cruise, %", "airspeed.cruise.reduction_percent", 1.0, 1),
         ("within ±1.96 sd in cruise", "airspeed.cruise.coverage_95", 1.0, 3),
     ):
-        sample = factor * flown.runs[key].dropna().to_numpy(float)
-        if sample.size == 0:
+        if key not in quantiles:
             continue
-        cells = (_with_band(quantile_band(sample, q), digits) for q in QUANTILES.values())
-        table.add_row(label, _number(sample.min(), digits), *cells, _number(sample.max(), digits))
+        found = quantiles[key]
+        cells = (_with_band(found[name], factor, digits) for name in QUANTILES.values())
+        least, greatest = (_number(factor * found[name], digits) for name in ("least", "greatest"))
+        table.add_row(label, least, *cells, greatest)
     return table
 
 
-def _with_band(quantile: "QuantileBand", digits: int) -> Text:
+def _with_band(quantile: dict[str, float | None], factor: float, digits: int) -> Text:
     """Return a quantile above its band, which few flights leave open on a side."""
-    low, high = (_number(bound, digits) for bound in (quantile.low, quantile.high))
-    band = f"{low}…{high}"
-    if quantile.low is None or quantile.high is None:
-        band = f"≥ {low}" if quantile.low is not None else f"≤ {high}" if quantile.high is not None else "–"
-    return words(f"{_number(quantile.value, digits)}\n", (band, "dim"))
+    value, low, high = (
+        None if one is None else factor * one for one in (quantile["value"], quantile["low"], quantile["high"])
+    )
+    band = f"{_number(low, digits)}…{_number(high, digits)}"
+    if low is None or high is None:
+        band = (
+            f"≥ {_number(low, digits)}"
+            if low is not None
+            else f"≤ {_number(high, digits)}"
+            if high is not None
+            else "–"
+        )
+    return words(f"{_number(value, digits)}\n", (band, "dim"))
 
 
 # -- cost ------------------------------------------------------------------------------------------------------------
