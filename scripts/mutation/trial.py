@@ -58,8 +58,8 @@ class Copy:
         os.utime(path, (stamp, stamp))
 
     def _tests(self, tests: Tests, limit: float | None, cache: str) -> tuple[str, float]:
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "--no-header", "-p", "no:cacheprovider", *tests]
-        command[7:7] = ["-p", "no:xdist", "-o", "addopts=", "-m", "not slow"]
+        plain = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not slow"]
+        command = [sys.executable, "-m", "pytest", *plain, *tests]
         kept = {"PYTHONPATH": str(self.folder), "NUMBA_CACHE_DIR": str(self.folder / cache)}
         began = time.monotonic()
         with (self.folder / "tests.log").open("wb") as log:
