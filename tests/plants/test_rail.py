@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import cos, radians, sin
 from typing import Any
 
+import numpy as np
 import pytest
 
 from uavsim.plants.rail import CREEP_SPEED, FREE, Motion, Rail, RailForces, body_axes
@@ -119,6 +120,15 @@ def test_nose_up_loads_the_shoes_against_it() -> None:
 def test_shoes_in_the_wrong_order_are_refused() -> None:
     with pytest.raises(ValueError, match="front launch shoe"):
         rail(front=REAR, rear=FRONT)
+
+
+@pytest.mark.parametrize(("ahead", "behind"), [(0.3, 0.1), (-0.1, -0.3)])
+def test_both_shoes_may_be_on_one_side_of_the_centre_of_gravity(ahead: float, behind: float) -> None:
+    """Their order is along x alone; the lever rule then has one of them pull."""
+    f = at(rail(front=(ahead, 0.0, 0.08), rear=(behind, 0.0, 0.08)), 1.0)
+    assert np.isfinite((f.front_normal, f.rear_normal)).all()
+    with pytest.raises(ValueError, match="front launch shoe"):
+        rail(front=(behind, 0.0, 0.08), rear=(ahead, 0.0, 0.08))
 
 
 # -- the push --------------------------------------------------------------------------------------------------------
