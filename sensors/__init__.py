@@ -37,8 +37,8 @@ What is not a number
 
 Names
     presets, preset, promised · Streams · Accelerometer, Vibration · PressureSensor, AirDataHead, head_noise ·
-    record_at_rest, read_bench_log · the settings and descriptions. The package imports numpy, pandas, scipy and
-    allantools late, nothing of uavsim.
+    record_at_rest, read_bench_log · the settings and descriptions. The package imports numpy; pandas and scipy
+    late, and nothing of uavsim.
 """
 
 from importlib import import_module

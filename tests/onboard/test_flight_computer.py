@@ -391,6 +391,37 @@ def test_while_the_airspeed_is_to_be_gained_the_pitch_is_the_launchs() -> None:
     assert box.commands[2] <= math.radians(SETTINGS.launch_pitch_deg) + 1e-12
 
 
+@pytest.mark.parametrize("level", [2.0, -1.5])
+def test_the_hold_is_about_the_pitch_of_level_cruise(level: float) -> None:
+    """pitch = level + K_h Δh between 2 level − climb and climb; throttle = level + K_c (pitch − level) + K_p e.
+
+    With a level pitch of 0, the default, a sign or a factor of it would go unseen.
+    """
+    box = flying(level_pitch_deg=level)
+    flat, climb = math.radians(level), math.radians(SETTINGS.climb_pitch_deg)
+    reading(box, 4.0, SETTINGS.airspeed)
+    assert box.commands[1:3] == (pytest.approx(SETTINGS.throttle_level, abs=2e-3), pytest.approx(flat, abs=1e-3))
+    for k, (height, pitch) in enumerate(((5000.0, 2.0 * flat - climb), (-500.0, climb))):
+        reading(box, 4.01 + 0.01 * k, SETTINGS.airspeed, height=height)
+        assert box.commands[2] == pytest.approx(pitch, abs=1e-9)
+        wanted = SETTINGS.throttle_level + SETTINGS.throttle_climb * (pitch - flat)
+        assert throttle(box) == pytest.approx(min(max(wanted, 0.0), 1.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("level", [2.0, -1.5])
+def test_what_is_safe_is_about_the_pitch_of_level_cruise(level: float) -> None:
+    """safe throttle + K_c (pitch − level pitch), and the pitch of level flight where the height is not known."""
+    box = flying(level_pitch_deg=level)
+    flat, climb = math.radians(level), math.radians(SETTINGS.climb_pitch_deg)
+    reading(box, 4.0, SETTINGS.airspeed)
+    lost(box, 4.01, 5.0, height=5000.0, valid=False)
+    assert box.commands[2] == pytest.approx(2.0 * flat - climb)
+    assert throttle(box) == pytest.approx(SETTINGS.safe_throttle + SETTINGS.throttle_climb * (flat - climb), abs=1e-9)
+    box._news = [(5.0, "airspeed_fault", "static", "frozen")]
+    reading(box, 5.0, 3.0, height=5000.0, valid=False)
+    assert box.commands[1:3] == (pytest.approx(SETTINGS.safe_throttle), pytest.approx(flat))
+
+
 def lost(box: FlightComputer, first: float, last: float, **bad: Any) -> None:
     for k in range(round((last - first) * 100)):
         reading(box, first + 0.01 * k, 3.0, **bad)
