@@ -28,7 +28,7 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "energy model": (
         ("uavsim/onboard/airspeed/energy.py", "uavsim/onboard/airspeed/energy_model.py"),
-        ("tests/onboard/test_airspeed_energy.py", "tests/onboard/test_airspeed_one_pass.py", FLIGHTS),
+        ("tests/onboard/test_airspeed_energy.py", "tests/onboard/test_airspeed_model.py", FLIGHTS),
     ),
     "rail": (("uavsim/plants/rail.py",), ("tests/plants/test_rail.py", FLIGHTS)),
     "plant": (("uavsim/plants/jsbsim.py",), (FLIGHTS, "tests/plants/test_launch_physics.py")),
