@@ -207,6 +207,20 @@ def test_bent_update_is_the_iterated_one_of_the_matrices():
     np.testing.assert_allclose(found, p - np.outer(p @ h, h @ p) / spread, rtol=1e-7, atol=1e-10)
 
 
+def test_a_spike_near_rest_is_left_out():
+    """Beyond the gate nothing changes; told are the innovation with its second-order part, and NIS by both."""
+    f = MatrixFilter(**UNEQUAL)
+    bend = 7.0 * f.p / HEAT * f.vv
+    expected, spread = f.p + 0.5 * bend, f.pp + f.dd + 2.9 + 0.5 * bend**2
+    before = f.gaussian()
+    nis = f.total(expected + 200.0, 2.9, 0.0, HEAT)
+    assert bend**2 > 0.01 * 2.9
+    assert not f.taken
+    assert (f.innovation, nis) == pytest.approx((200.0, 200.0**2 / spread), rel=1e-9)
+    for one, other in zip(before, f.gaussian(), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
 def test_start_knows_the_sum_of_bias_and_slope():
     """At rest f_x reads b + s: its variance is rest_sd², that of b alone bias_sd²; both are not independent of s."""
     known = filled(
