@@ -16,12 +16,15 @@ from dataclasses import dataclass
 from math import hypot, pi, sqrt
 
 from sensors.accelerometer_description import AccelerometerDescription
+from sensors.mounting import attitude, product, transposed
 from sensors.pneumatics import GAMMA, GAS_CONSTANT, STANDARD, laminar_lag
 from sensors.pressure_description import PressureDescription
 from sensors.settings import AccelerometerSettings, AirDataSettings, TubeSettings, Vector, VibrationSettings
 from sensors.unit import G0, unit_vector
 
 DENSITY = STANDARD["pressure"] / (GAS_CONSTANT * STANDARD["temperature"])  # kg/m³
+WARMTH_SD = 15.0  # K, of a die about 25 °C beside its own heat: -20 … 70 °C are three of them
+SWITCHED_ON = 60.0  # s, over which a walk of the offset counts
 COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
 
 
@@ -36,7 +39,11 @@ class AccelerometerKnowledge:
     noise_sd : float
         White noise of one reading, vibration in flight included, m/s².
     scale_sd : float
-        Scale error, a fraction.
+        Scale error and what the temperature makes of it, a fraction.
+    offset_sd, lift_offset_sd : float
+        What f_x and f_z are off by at 1 g, constant in a flight or nearly so, m/s²: the part's offset, what temperature
+        and time make of it, what the case's attitude and the part's cross-axis sensitivity turn into the axis, what
+        vibration is rectified to, and the size of what a scenario adds by `accelerometer.bias`.
     lag : float
         Age of a reading at its time stamp, s.
     """
@@ -44,6 +51,8 @@ class AccelerometerKnowledge:
     rate: float
     noise_sd: float
     scale_sd: float
+    offset_sd: float
+    lift_offset_sd: float
     lag: float
 
 
@@ -104,11 +113,15 @@ class HeadKnowledge:
 
 def known_of_accelerometer(settings: AccelerometerSettings, vibration: VibrationSettings) -> AccelerometerKnowledge:
     """Return what may be believed of an accelerometer on an airframe that shakes so."""
-    part = settings.description()
+    part, shaking = settings.description(), settings.vibration_scale * vibration.flight_rms_g * G0
+    warmer = hypot(WARMTH_SD, settings.thermal.self_heating)
+    noise, (offset, _, lift_offset) = part.noise_sd[0], _offsets(settings, part, warmer, shaking)
     return AccelerometerKnowledge(
         rate=part.rate,
-        noise_sd=hypot(part.noise_sd[0], _shaking(vibration, settings.vibration_scale, part.rate)),
-        scale_sd=part.scale_sd,
+        noise_sd=hypot(noise, part.resolution / sqrt(12.0), shaking * _share(vibration, part.rate)),
+        scale_sd=hypot(part.scale_sd, part.scale_tc_sd * warmer),
+        offset_sd=offset,
+        lift_offset_sd=lift_offset,
         lag=settings.delay + _delay(part),
     )
 
@@ -170,7 +183,29 @@ def _delay(part: AccelerometerDescription) -> float:
     return sqrt(part.poles) / (2.0 * pi * part.bandwidth)  # Butterworth: 1/ω for one pole, √2/ω for two
 
 
-def _shaking(vibration: VibrationSettings, scale: float, rate: float) -> float:
-    """White noise a reading that stands for the vibration in flight, m/s²."""
+def _share(vibration: VibrationSettings, rate: float) -> float:
+    """White noise a reading that stands for vibration of unit rms."""
     low, high = vibration.band_hz
-    return vibration.flight_rms_g * G0 * scale * sqrt(0.5 * rate / (high - low))
+    return sqrt(0.5 * rate / (high - low))
+
+
+def _offsets(
+    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float
+) -> tuple[float, ...]:
+    """Standard deviations of the offsets along the body's axes, m/s², of a die warmer than 25 °C by so much, K."""
+    added = settings.bias if isinstance(settings.bias, tuple) else (settings.bias,) * 3
+    common = (
+        part.drift_sd,
+        part.random_walk * sqrt(SWITCHED_ON),
+        part.cross_axis_sd * G0,
+        part.rectification_sd * shaking**2,
+    )
+    in_case = [
+        hypot(sd, tc * warmer, own, *common) for sd, tc, own in zip(part.bias_sd, part.bias_tc_sd, added, strict=True)
+    ]
+    mounting = attitude(*settings.mounting_deg)
+    turned = product(product(mounting, transposed(attitude(*settings.mounting_error_deg))), transposed(mounting))
+    return tuple(
+        hypot(*(share * sd for share, sd in zip(row, in_case, strict=True)), G0 * (down[2] - level))
+        for row, down, level in zip(mounting, turned, (0.0, 0.0, 1.0), strict=True)
+    )

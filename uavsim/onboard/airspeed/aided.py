@@ -27,6 +27,7 @@ clocks of head and accelerometer agree.
 """
 
 from collections import deque
+from dataclasses import replace
 from math import expm1, inf, log1p, nan, sqrt
 
 from uavsim import airdata
@@ -35,6 +36,7 @@ from uavsim.onboard.airspeed.energy import GATE, SEVEN_R, EnergyFilter
 from uavsim.onboard.airspeed.gust import gust_density
 from uavsim.onboard.airspeed.interface import Estimate, Feel, NoiseModel, TareWindow
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
+from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.one_pass import OnePassFilter
 from uavsim.onboard.airspeed.push import Push
 from uavsim.onboard.airspeed.readmission import longest_row
@@ -66,6 +68,7 @@ THINNEST, THICKEST = 1e3, 2e5  # Pa, of the filter's static pressure, alike
 SUDDEN, SUDDEN_SD = 100.0, 15.0  # Pa, and standard deviations: how far a pressure goes at once, and beside that
 STEEP, STROKE = 3e3, 5e4  # Pa/s: 60 m/s and 40 m/s², or a dive at 250 m/s; and in the stroke 80 m/s and 500 m/s²
 MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go
+FARTHEST = 3.0  # standard deviations of an offset, by which a reading of a plausible force may be beyond its bound
 COASTED = 2.0  # m/s, standard deviation up to which an airspeed without its port is valid
 PERSISTENT = 5  # static pressures out of the gate one after another, then they are believed
 MODEL = 0.1  # Pa, what the model of a pressure is off by, whatever its sensor: 0.1 ms of the stroke's rise
@@ -117,12 +120,14 @@ class AidedFilter:
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
+        settings = replace(settings, aided=with_offset(settings.aided, noise.accelerometer_offset_sd))
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
         force = settings.aided.flight_force
         self._flight_force = MOST_FLIGHT_FORCE if force is None else force
+        self._flight_force += FARTHEST * noise.accelerometer_offset_sd
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._rows: deque[Row] = deque(maxlen=ROWS)
         self._total_age = 0.5 * noise.total_window + noise.total_lag
@@ -291,9 +296,11 @@ class AidedFilter:
         """Look at how the sensors repeat themselves on the rail, and begin to watch their ports."""
         if self._rows:
             self._usual = [longest_row(row[i] for row in self._rows) for i in (1, 2)]
-        usual, walk = self._usual, self._noise.walk
-        self.watch = TotalWatch(self._settings.aided, self._total_variance, walk, usual[0])
-        self.static_watch = StaticWatch(self._static_variance, walk, usual[1])
+        usual, noise = self._usual, self._noise
+        off, lift_off = noise.accelerometer_offset_sd, noise.lift_offset_sd
+        white = noise.accelerometer_sd**2 / noise.accelerometer_rate
+        self.watch = TotalWatch(self._settings.aided, self._total_variance, noise.walk, usual[0], off, white)
+        self.static_watch = StaticWatch(self._static_variance, noise.walk, usual[1], lift_off)
         self._lift = GRAVITY
         self._static_seen = self._total_seen = None
 
