@@ -45,3 +45,10 @@ def test_an_offset_that_is_kept_from_the_belief_is_not_survived() -> None:
     """Through [mismatch]: what the belief is good for."""
     flight = fly("accelerometer.bias=3.0", "mismatch.accelerometer_offset=0")
     assert flight.score["airspeed"]["rmse"] > flight.score["airspeed"]["rmse_raw"]
+
+
+def test_an_offset_beyond_the_stroke_ends_level_opens_the_wings() -> None:
+    """12 m/s² is more than the 1 g below which f_x, less what it was on the rail, must fall."""
+    flight = fly("accelerometer.bias=12.0")
+    assert {"stroke_end", "wings_commanded"} <= {e["event"] for e in flight.events}
+    assert flight.score["outcome"] == "cruise"
