@@ -42,8 +42,8 @@ class AccelerometerKnowledge:
         Scale error and what the temperature makes of it, a fraction.
     offset_sd, lift_offset_sd : float
         What f_x and f_z are off by at 1 g, constant in a flight or nearly so, m/s²: the part's offset, what temperature
-        and time make of it, what the case's attitude and the part's cross-axis sensitivity turn into the axis, what
-        vibration is rectified to, and the size of what a scenario adds by `accelerometer.bias`.
+        and a minute make of it, what vibration is rectified to, what of the 1 g a scale error, the cross-axis
+        sensitivity and an error of the mounting bring into the axis, and the size of what `accelerometer.bias` adds.
     lag : float
         Age of a reading at its time stamp, s.
     """
@@ -115,11 +115,12 @@ def known_of_accelerometer(settings: AccelerometerSettings, vibration: Vibration
     """Return what may be believed of an accelerometer on an airframe that shakes so."""
     part, shaking = settings.description(), settings.vibration_scale * vibration.flight_rms_g * G0
     warmer = hypot(WARMTH_SD, settings.thermal.self_heating)
-    noise, (offset, _, lift_offset) = part.noise_sd[0], _offsets(settings, part, warmer, shaking)
+    scale_sd = hypot(part.scale_sd, part.scale_tc_sd * warmer)
+    offset, _, lift_offset = _offsets(settings, part, warmer, shaking, scale_sd)
     return AccelerometerKnowledge(
         rate=part.rate,
-        noise_sd=hypot(noise, part.resolution / sqrt(12.0), shaking * _share(vibration, part.rate)),
-        scale_sd=hypot(part.scale_sd, part.scale_tc_sd * warmer),
+        noise_sd=hypot(part.noise_sd[0], part.resolution / sqrt(12.0), shaking * _share(vibration, part.rate)),
+        scale_sd=scale_sd,
         offset_sd=offset,
         lift_offset_sd=lift_offset,
         lag=settings.delay + _delay(part),
@@ -190,22 +191,26 @@ def _share(vibration: VibrationSettings, rate: float) -> float:
 
 
 def _offsets(
-    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float
+    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float, scale_sd: float
 ) -> tuple[float, ...]:
-    """Standard deviations of the offsets along the body's axes, m/s², of a die warmer than 25 °C by so much, K."""
-    added = settings.bias if isinstance(settings.bias, tuple) else (settings.bias,) * 3
-    common = (
-        part.drift_sd,
-        part.random_walk * sqrt(SWITCHED_ON),
-        part.cross_axis_sd * G0,
-        part.rectification_sd * shaking**2,
-    )
-    in_case = [
-        hypot(sd, tc * warmer, own, *common) for sd, tc, own in zip(part.bias_sd, part.bias_tc_sd, added, strict=True)
-    ]
+    """Standard deviations of the offsets along the body's axes at 1 g, m/s², of a die off 25 °C by so much, K."""
     mounting = attitude(*settings.mounting_deg)
+    added = settings.bias if isinstance(settings.bias, tuple) else (settings.bias,) * 3
+    in_case = [
+        hypot(
+            part.bias_sd[i],
+            part.bias_tc_sd[i] * warmer,
+            part.drift_sd,
+            part.random_walk * sqrt(SWITCHED_ON),
+            part.rectification_sd * shaking**2,
+            scale_sd * G0 * down,
+            part.cross_axis_sd * G0 * sqrt(max(0.0, 1.0 - down * down)),
+            added[i],
+        )
+        for i, down in enumerate(mounting[2])  # the body's z axis in the case: along it there is 1 g
+    ]
     turned = product(product(mounting, transposed(attitude(*settings.mounting_error_deg))), transposed(mounting))
     return tuple(
-        hypot(*(share * sd for share, sd in zip(row, in_case, strict=True)), G0 * (down[2] - level))
-        for row, down, level in zip(mounting, turned, (0.0, 0.0, 1.0), strict=True)
+        hypot(*(share * sd for share, sd in zip(row, in_case, strict=True)), G0 * (seen[2] - level))
+        for row, seen, level in zip(mounting, turned, (0.0, 0.0, 1.0), strict=True)
     )
