@@ -140,8 +140,11 @@ def test_the_detector_is_not_asked_while_there_is_a_launch_to_follow() -> None:
 
 
 def test_stroke_ends_when_the_mean_of_10_ms_was_below_1_g_for_20_ms() -> None:
-    """From 8 g at once to -1 m/s²: enough of the last ten readings must be new ones; 20 ms later it is over."""
-    crossed = next(n for n in range(11) if n * -1.0 + (10 - n) * 8.0 * G < 10 * G)
+    """From 8 g at once to -1 m/s²: enough of the last ten readings must be new ones; 20 ms later it is over.
+
+    The level is above what f_x was on the rail.
+    """
+    crossed = next(n for n in range(11) if n * -1.0 + (10 - n) * 8.0 * G < 10 * (G + REST))
     assert events(launched())["stroke_end"] == pytest.approx(2.4 + (crossed - 1) / RATE + 0.020, abs=1e-9)
 
 
@@ -151,8 +154,18 @@ def test_the_hold_and_the_level_are_settings(hold: float) -> None:
     never = computer(2.02, stroke_end_level_g=0.5)
     feed(never, REST, 0.0, 2.0)
     feed(never, 8.0 * G, 2.0, 2.4)
-    feed(never, 0.6 * G, 2.4, 4.0)
+    feed(never, REST + 0.6 * G, 2.4, 4.0)
     assert never.state == "stroke"
+
+
+@pytest.mark.parametrize("offset", [-20.0, 20.0])
+def test_an_offset_does_not_move_the_end_of_the_stroke(offset: float) -> None:
+    """±2 g of the accelerometer's own: the mean on the rail holds it."""
+    box = computer(2.02)
+    feed(box, REST + offset, 0.0, 2.0)
+    feed(box, 8.0 * G + offset, 2.0, 2.4)
+    feed(box, -1.0 + offset, 2.4, 4.0)
+    assert events(box)["stroke_end"] == events(launched())["stroke_end"]
 
 
 def test_a_dip_shorter_than_the_hold_does_not_end_the_stroke() -> None:

@@ -28,6 +28,7 @@ soon as the clocks of head and accelerometer agree.
 """
 
 from collections import deque
+from dataclasses import replace
 from math import inf, nan, sqrt
 
 from uavsim import airdata
@@ -38,6 +39,7 @@ from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.membrane_push import MembranePush
+from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.onset import ONE_SIDED, Onset
 from uavsim.onboard.airspeed.ports import PERSISTENT, Ports
 from uavsim.onboard.airspeed.rest_force import RestForce
@@ -82,6 +84,9 @@ SUDDEN, SUDDEN_SD = 100.0, 15.0
 # Pa/s that are granted beside: ρ V V̇ at 60 m/s and 40 m/s², or a dive at 250 m/s; in the stroke ρ V V̇ at 80 m/s and
 # 500 m/s²
 STEEP, STROKE = 3e3, 5e4
+# standard deviations of the accelerometer's offset, by which a reading of a plausible force may be beyond its bound.
+# Beyond it a reading is a missing one. By hand: the usual three
+FARTHEST = 3.0
 OLDEST = 0.05  # s by which a reading may be behind the filter; an older one is not taken
 # s, two periods of a head at 100 Hz. Where a static pressure is so far ahead of the filter, total pressures have ceased
 # to come, and the filter goes on without them
@@ -138,12 +143,14 @@ class AidedFilter(Estimator):
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
+        settings = replace(settings, aided=with_offset(settings.aided, noise.accelerometer_offset_sd))
         aided = settings.aided
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
         self._flight_force = MOST_FLIGHT_FORCE if aided.flight_force is None else aided.flight_force
+        self._flight_force += FARTHEST * noise.accelerometer_offset_sd
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._push, self._force = MembranePush(noise, self._gained, self._rest), 0.0
         self._rows: deque[Row] = deque(maxlen=ROWS)

@@ -34,6 +34,8 @@ class ClimbTest:
         Of a reading's noise, Pa².
     static : float
         Static pressure at the start, Pa.
+    offset_sd : float
+        Offset of f_z, m/s².
 
     Attributes
     ----------
@@ -52,12 +54,12 @@ class ClimbTest:
         "held_variance", "p", "since",
     )  # fmt: skip
 
-    def __init__(self, variance: float, static: float) -> None:
+    def __init__(self, variance: float, static: float, offset_sd: float = 0.0) -> None:
         self._noise = variance
         self.p = self.held = static
         self.c = self.a = self.evidence = self.since = self.climb_then = 0.0
         self._pp = self.held_variance = 1e6
-        self._cc, self._aa = CLIMB_SD * CLIMB_SD, BIAS_SD * BIAS_SD
+        self._cc, self._aa = CLIMB_SD * CLIMB_SD, BIAS_SD * BIAS_SD + offset_sd * offset_sd
         self._pc = self._pa = self._ca = 0.0
 
     def add(self, reading: float, dt: float, lift: float, weight: float) -> float:

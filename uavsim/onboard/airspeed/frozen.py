@@ -30,7 +30,7 @@ takes the place of the gusts that the aided filter grants in calm air.
 
 from math import log
 
-BIAS_SD = 0.5  # m/s², the part's bias and α₀. By hand
+BIAS_SD = 0.5  # m/s², α₀; the part's offset comes on top. By hand
 # m, c and its standard deviation: 160 N/m² of wing loading at a lift slope of 5.3, and none to 300 N/m². Without c
 # flights from 32 to 26 m/s were as a rule taken for shut ports (docs/faults.md)
 TURN, TURN_SD = 5.0, 5.0
@@ -57,6 +57,8 @@ class FrozenTest:
         How fast b wanders in steady flight and still air, (m/s²)/√s.
     declared : bool
         Whether turbulence is declared, so that stillness is evidence.
+    offset_sd : float
+        Offset of f_x, m/s².
 
     Attributes
     ----------
@@ -77,15 +79,15 @@ class FrozenTest:
         "evidence", "held", "held_variance", "lost", "lost_variance", "misfit", "pressure",
     )  # fmt: skip
 
-    def __init__(self, variance: float, bias_rate: float, declared: bool) -> None:
+    def __init__(self, variance: float, bias_rate: float, declared: bool, offset_sd: float = 0.0) -> None:
         self._noise, self._declared = variance, declared
         self._bias_density = (TURNED * bias_rate if declared else bias_rate) ** 2
         self.evidence = self.misfit = self.pressure = self.held = 0.0
         self.count = 0
         self._b, self._c, self.lost = 0.0, TURN, 0.0
-        self._pp, self._bb, self._cc = 1e12, BIAS_SD * BIAS_SD, TURN_SD * TURN_SD
+        self._pp, self._bb, self._cc = 1e12, BIAS_SD * BIAS_SD + offset_sd * offset_sd, TURN_SD * TURN_SD
         self._pb = self._pc = self._bc = 0.0
-        self.held_variance, self.lost_variance = 1e12, BIAS_SD * BIAS_SD
+        self.held_variance, self.lost_variance = 1e12, self._bb
 
     def add(
         self,

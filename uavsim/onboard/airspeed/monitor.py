@@ -53,6 +53,8 @@ class PortMonitor:
         The longest row of equal readings that the live sensor has been seen to give.
     gusts : bool
         Whether turbulence is declared, so that stillness is evidence.
+    offset_sd : float
+        Offset of f_x, m/s².
 
     Attributes
     ----------
@@ -62,10 +64,12 @@ class PortMonitor:
         The comparison of a live port with one that is shut.
     """
 
-    __slots__ = ("_down", "_gusts", "_level", "_rate", "_up", "_variance", "back", "frozen")
+    __slots__ = ("_down", "_gusts", "_level", "_offset_sd", "_rate", "_up", "_variance", "back", "frozen")
 
-    def __init__(self, bias_rate: float, variance: float, walk: float, usual: int, gusts: bool) -> None:
-        self._variance, self._rate, self._gusts = variance, bias_rate, gusts
+    def __init__(
+        self, bias_rate: float, variance: float, walk: float, usual: int, gusts: bool, offset_sd: float = 0.0
+    ) -> None:
+        self._variance, self._rate, self._gusts, self._offset_sd = variance, bias_rate, gusts, offset_sd
         self._level = FROZEN if gusts else CALM
         self.back = Readmission(variance, walk, usual)
         self.restart()
@@ -73,7 +77,7 @@ class PortMonitor:
     def restart(self) -> None:
         """Forget what has been seen."""
         self._up = self._down = 0.0
-        self.frozen = FrozenTest(self._variance, self._rate, self._gusts)
+        self.frozen = FrozenTest(self._variance, self._rate, self._gusts, self._offset_sd)
 
     @property
     def unsure(self) -> bool:

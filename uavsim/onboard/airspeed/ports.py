@@ -85,9 +85,11 @@ class Ports:
         rows = list(rows)
         if rows:
             self._usual = [longest_row(row[i] for row in rows) for i in (1, 2)]
-        usual, walk = self._usual, self._noise.walk
-        self.total = TotalWatch(self._aided, self._total_variance, walk, usual[0])
-        self.static = StaticWatch(self._static_variance, walk, usual[1])
+        usual, noise = self._usual, self._noise
+        white = noise.accelerometer_sd**2 / noise.accelerometer_rate
+        offset, lift_offset = noise.accelerometer_offset_sd, noise.lift_offset_sd
+        self.total = TotalWatch(self._aided, self._total_variance, noise.walk, usual[0], offset, white)
+        self.static = StaticWatch(self._static_variance, noise.walk, usual[1], lift_offset)
         self._lift, self.misses, self.torn = GRAVITY, 0, False
         self.forget_seen()
 

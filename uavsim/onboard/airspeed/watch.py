@@ -93,6 +93,10 @@ class TotalWatch:
         Of a reading's noise, Pa², and random walk of the pair's difference, Pa/√s.
     usual : int
         The longest row of equal readings that the live sensor has been seen to give.
+    offset_sd : float
+        Offset of f_x, m/s².
+    force_density : float
+        By how much noise of f_x widens its integral, m²/s³.
 
     Attributes
     ----------
@@ -102,18 +106,26 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_astray", "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_jumped", "_jumped_at", "_last",
-        "_lost", "_near", "_p", "_sound", "_still", "_t", "_t0", "_taught", "_u", "_u0", "_v", "_vv", "_wandering",
-        "faulty", "port",
+        "_astray", "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
+        "_jumped_at", "_last", "_lost", "_near", "_p", "_sound", "_still", "_t", "_t0", "_taught", "_u", "_u0",
+        "_v", "_vv", "_wandering", "faulty", "port",
     )  # fmt: skip
 
-    def __init__(self, aided: AidedSettings, variance: float, walk: float, usual: int = 0) -> None:
-        self._declared = aided.gust_sd > aided.gust_floor
+    def __init__(
+        self,
+        aided: AidedSettings,
+        variance: float,
+        walk: float,
+        usual: int = 0,
+        offset_sd: float = 0.0,
+        force_density: float = 0.0,
+    ) -> None:
+        self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = LeakTest(aided.gust_sd, aided.gust_length)
-        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared)
+        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared, offset_sd)
         self.faulty = self._astray = False
         self._t = self._t0 = -inf
         self._before: tuple[Kept, ...] = (NOTHING,)
@@ -154,7 +166,9 @@ class TotalWatch:
             self._near, self._taught = 0, 0.0
             self._wandering.forget()
         test = port.frozen
-        reach = (gust if self._declared else self._still) * v * dt
+        spread = (gust if self._declared else self._still) * v
+        if spread < self._force_density:  # noqa: PLR1730 - a coarse accelerometer hides more of V than still air
+            spread = self._force_density
         if t - self._before[-1][0] > PACE:
             now = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
             self._before = (*self._before[1 - KEPT :], now)
@@ -162,7 +176,7 @@ class TotalWatch:
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, reach, turn) == 0.0
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, spread * dt, turn) == 0.0
         if healthy or self._t0 == -inf:
             self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
             self._bias, self._bb = test.lost, test.lost_variance
@@ -243,6 +257,8 @@ class StaticWatch:
         Of a reading's noise, Pa², and random walk of the sensor, Pa/√s.
     usual : int
         As of `TotalWatch`.
+    offset_sd : float
+        Offset of f_z, m/s².
 
     Attributes
     ----------
@@ -250,12 +266,12 @@ class StaticWatch:
         Whether the port is flagged.
     """
 
-    __slots__ = ("_back", "_t", "_test", "_variance", "faulty")
+    __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty")
 
-    def __init__(self, variance: float, walk: float, usual: int = 0) -> None:
-        self._variance = variance * apart(usual)
+    def __init__(self, variance: float, walk: float, usual: int = 0, offset_sd: float = 0.0) -> None:
+        self._variance, self._offset_sd = variance * apart(usual), offset_sd
         self._back = Readmission(variance, walk, usual)
-        self._test, self._t, self.faulty = ClimbTest(variance, 0.0), -inf, False
+        self._test, self._t, self.faulty = ClimbTest(variance, 0.0, offset_sd), -inf, False
 
     @property
     def suspect(self) -> bool:
@@ -292,7 +308,7 @@ class StaticWatch:
             return ""
         dt = t - self._t
         if dt > GAP:
-            self._test, dt = ClimbTest(self._variance, reading), 0.0
+            self._test, dt = ClimbTest(self._variance, reading, self._offset_sd), 0.0
         self._t = t
         evidence = self._test.add(reading, dt, lift, density * GRAVITY)
         return "frozen" if evidence > SHUT else ""
