@@ -11,7 +11,6 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
 from importlib.metadata import version
 from operator import attrgetter
 from pathlib import Path
@@ -86,8 +85,8 @@ class WatchedDetector:
         self.detector = detector
         self.rows: list[tuple[Any, ...]] = []
         self._from = record_from
-        told = [name for name in STATE if hasattr(detector, name)]
-        self._state = attrgetter(*STATE) if len(told) == len(STATE) else partial(_told, told)
+        tells_all = all(hasattr(detector, name) for name in STATE)
+        self._state: Callable[[launch.Detector], Iterable[Any]] = attrgetter(*STATE) if tells_all else _told
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
         """Take one reading; see the detector's own."""
@@ -101,9 +100,9 @@ class WatchedDetector:
         self.detector.reset()
 
 
-def _told(names: Sequence[str], detector: launch.Detector) -> list[Any]:
+def _told(detector: launch.Detector) -> list[Any]:
     """Return the state that a detector tells of, None for the rest."""
-    return [getattr(detector, name) if name in names else None for name in STATE]
+    return [getattr(detector, name, None) for name in STATE]
 
 
 class Onboard:

@@ -60,7 +60,6 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
 
 def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], list[float]]:
     """Return the detector's state at each reading, and when it recognised a launch."""
-    told = [name for name in STATE if hasattr(detector, name)]
     state = {name: array("d") for name in STATE}
     recognised = array("b")
     detections: list[float] = []
@@ -74,18 +73,16 @@ def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], lis
         if seen:
             detections.append(t)
             resume = t + PAUSE
-        for name in told:
-            value = getattr(detector, name)
-            state[name].append(np.nan if value is None else value)
+        for name, values in state.items():
+            value = getattr(detector, name, None)
+            values.append(np.nan if value is None else value)
         recognised.append(seen)
-    columns = {name: _column(np.array(state[name]), len(recognised), of_flags=name == "triggered") for name in STATE}
+    columns = {name: _column(np.array(state[name]), of_flags=name == "triggered") for name in STATE}
     return {**columns, "recognised": np.array(recognised, dtype=bool)}, detections
 
 
-def _column(values: Array, rows: int, *, of_flags: bool) -> NDArray[Any]:
+def _column(values: Array, *, of_flags: bool) -> NDArray[Any]:
     """Return a state of the detector as whole numbers or flags where that is what it tells; NaN where it tells none."""
-    if not values.size:
-        return np.full(rows, np.nan)
     if np.isnan(values).any():
         return values
     if of_flags:

@@ -1,0 +1,471 @@
+"""Detectors, estimators and plants of one's own: they fly, are named, replay, fail with a reason, and are refused."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import uavsim
+from uavsim import plugins
+from uavsim.flight import load
+from uavsim.onboard.launch import DetectorSettings
+from uavsim.plants.plant import Run
+from uavsim.plants.prescribed import PrescribedPlant
+from uavsim.plugins import REGISTRIES, PluginError, find
+from uavsim.scenario import Scenario, load_scenario
+
+SHORT = ("duration=6", "launcher.wait_min=2.5", "launcher.wait_max=2.6", "expect=timeout")
+PLUGIN = """
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Interval
+
+import uavsim
+from uavsim.plugins import detector, estimator
+
+
+@detector("held", level="f_x over level", unit="m/s²")
+class Held:
+    @dataclass(frozen=True)
+    class Settings:
+        level: Annotated[float, Interval(gt=0.0, le=500.0)] = 40.0
+        hold: float = 0.010
+        names: tuple[str, ...] = ()
+
+    def __init__(self, rate, settings=Settings()):
+        self.settings = settings
+        self.reset()
+
+    def reset(self):
+        self.since, self.done = None, False
+
+    def step(self, t, fx, fy, fz):
+        self.level = fx - self.settings.level
+        if self.level <= 0.0:
+            self.since = None
+        elif self.since is None:
+            self.since = t
+        if self.done or self.since is None or t - self.since < self.settings.hold:
+            return False
+        self.done = True
+        return True
+
+
+@estimator("bernoulli-alone")
+class Alone(uavsim.onboard.airspeed.Estimator):
+    def __init__(self, settings, knowledge, tare_window):
+        self.sd = knowledge.total_sd
+
+    def step(self, t, p_total, p_static, temperature, t_total, t_static):
+        q = p_total - p_static
+        if not q > 0.0:
+            return float("nan"), float("nan"), False
+        return (2.0 * q / 1.2) ** 0.5, 0.5, True
+"""
+
+
+@pytest.fixture(autouse=True)
+def _forgotten() -> Iterator[None]:
+    """Leave the registries as they were."""
+    before = {what: list(registry) for what, registry in REGISTRIES.items()}
+    loaded = dict(plugins._loaded)
+    yield
+    for what, registry in REGISTRIES.items():
+        for name in [name for name in registry if name not in before[what]]:
+            registry.remove(name)
+    plugins._loaded.clear()
+    plugins._loaded.update(loaded)
+    for key in list(plugins._files):
+        del plugins._files[key], sys.modules[key]
+
+
+@pytest.fixture
+def plugin(tmp_path: Path) -> Path:
+    file = tmp_path / "mine.py"
+    file.write_text(PLUGIN, encoding="utf-8")
+    return file
+
+
+def run(*arguments: object, cwd: Path | None = None) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "uavsim.cli", *map(str, arguments)]
+    return subprocess.run(command, check=False, capture_output=True, text=True, timeout=300, cwd=cwd)
+
+
+def settings(*more: str) -> list[str]:
+    return [part for change in (*SHORT, *more) for part in ("--set", change)]
+
+
+# -- they fly --------------------------------------------------------------------------------------------------------
+
+
+def test_a_detector_and_an_estimator_fly_are_named_and_replay_byte_for_byte(plugin: Path, tmp_path: Path) -> None:
+    out, again = tmp_path / "out", tmp_path / "again"
+    given = ("detector.kind=held", "detector.options.level=35", "estimator.kind=bernoulli-alone")
+    flown = run("fly", "catapult", "--plugin", plugin, *settings(*given), "--no-plots", "--out", out)
+    assert flown.returncode in (0, 1), flown.stderr
+    flight = load(out)
+    assert flight.score["launch"]["detector"] == "held"
+    assert flight.score["airspeed"]["estimator"] == "bernoulli-alone"
+    assert [(p["group"], p["name"], p["source"]) for p in flight.score["plugins"]] == [
+        ("uavsim.detectors", "held", "mine.py"),
+        ("uavsim.estimators", "bernoulli-alone", "mine.py"),
+    ]
+    assert len(flight.score["plugins"][0]["sha256"]) == 64
+    assert flight.scenario["detector"]["options"] == {"level": 35.0, "hold": 0.010, "names": []}
+    found = flight.detector
+    assert found[["count", "total", "triggered"]].isna().all().all()  # it has none
+    assert found["level"].max() > 0.0 > found["level"].min()
+    assert found["recognised"].sum() == 1
+    assert flight.score["launch"]["latency"] < 0.030
+
+    refused = run("replay", out, "--out", again)
+    assert refused.returncode == 2
+    assert refused.stderr.count("\n") == 1
+    assert "'held' is not registered here; it was flown with 'held' of mine.py (SHA-256" in refused.stderr
+    assert not again.exists()
+    replayed = run("replay", out, "--plugin", plugin, "--no-plots", "--out", again)
+    assert replayed.returncode == 0, replayed.stderr
+    for name in ("estimate.parquet", "detector.parquet", "events.json"):
+        assert (again / name).read_bytes() == (out / name).read_bytes()
+
+
+def test_another_version_of_the_file_does_not_replay(plugin: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    run("fly", "catapult", "--plugin", plugin, *settings("detector.kind=held"), "--no-plots", "--out", out)
+    plugin.write_text(PLUGIN + "\n# better\n", encoding="utf-8")
+    refused = run("replay", out, "--plugin", plugin)
+    assert refused.returncode == 2
+    assert "was flown with 'held' of mine.py (SHA-256" in refused.stderr
+    assert "and here is 'held' of mine.py (SHA-256" in refused.stderr
+
+
+def test_several_seeds_fly_in_processes_of_their_own(plugin: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    flown = run(
+        "fly", "catapult", "--plugin", plugin.name, *settings("detector.kind=held"), "--seeds", "1-3", "--no-plots",
+        "--out", out, cwd=tmp_path,
+    )  # fmt: skip
+    assert flown.returncode in (0, 1), flown.stderr
+    import pandas as pd
+
+    runs = pd.read_parquet(out / "runs.parquet")
+    assert runs["launch.detector"].tolist() == ["held"] * 3
+    assert runs["launch.latency"].notna().all()
+
+
+def test_classes_fly_in_python_whether_they_are_registered_or_not() -> None:
+    class Sudden:
+        def __init__(self, rate: float) -> None: ...
+
+        def reset(self) -> None: ...
+
+        def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
+            return fx > 40.0
+
+    class Constant(uavsim.onboard.airspeed.Estimator):
+        def __init__(self, *given: Any) -> None:
+            self.given = given
+
+        def step(self, *reading: float) -> Any:
+            return 20.0, 5.0, True
+
+    flight = uavsim.fly("catapult", overrides=SHORT, detector=Sudden, estimator=Constant)
+    assert flight.score["launch"]["detector"] == "Sudden"
+    assert flight.score["airspeed"]["estimator"] == "Constant"
+    assert flight.estimate["airspeed"].eq(20.0).all()
+    usual = uavsim.fly("catapult", overrides=(*SHORT, "estimator.kind=paper"), detector=Sudden)
+    same = flight.estimate["t"].isin(usual.estimate["t"])
+    raw = usual.estimate["airspeed_raw"][usual.estimate["t"].isin(flight.estimate["t"])]
+    early = flight.estimate["t"][same] < 2.6  # the same flight as long as nothing was commanded
+    np.testing.assert_array_equal(
+        flight.estimate["airspeed_raw"][same][early].to_numpy(), raw[: early.sum()].to_numpy()
+    )
+
+
+def test_ours_by_name_fly_in_python() -> None:
+    flight = uavsim.fly("catapult", overrides=SHORT, detector="cusum", estimator="paper")
+    assert (flight.score["launch"]["detector"], flight.score["airspeed"]["estimator"]) == ("cusum", "paper")
+    assert flight.score["plugins"] == []
+
+
+class Bench(PrescribedPlant):
+    """A push along x."""
+
+    @dataclass(frozen=True)
+    class Settings:
+        push: float = 60.0
+
+    def __init__(self, settings: Any, run: Run) -> None:
+        since = run.time - run.release_time
+        push = np.where((since >= 0.0) & (since < 0.4), settings.push, 3.0)
+        super().__init__(run, {"fx": push, "fy": 0.0 * push, "fz": 0.0 * push - 9.4})
+
+
+def test_a_plant_flies_as_a_rig() -> None:
+    plugins.plant("bench")(Bench)
+    flight = uavsim.fly("catapult", overrides=(*SHORT, "expect=completed"), plant=Bench)
+    assert flight.score["outcome"] == "completed"
+    assert flight.truth["fx"].max() == 60.0
+    assert flight.score["launch"]["detected_time"] is not None
+    assert flight.score["plugins"][0]["group"] == "uavsim.plants"
+    harder = uavsim.fly("catapult", overrides=(*SHORT, "plant.kind=bench", "plant.options.push=80"))
+    assert harder.truth["fx"].max() == 80.0
+
+
+# -- they fail -------------------------------------------------------------------------------------------------------
+
+
+def _detector(step: Any) -> type:
+    return type("Bad", (), {"__init__": lambda self, rate: None, "reset": lambda self: None, "step": step})
+
+
+def _estimator(step: Any) -> type:
+    return type("Bad", (uavsim.onboard.airspeed.Estimator,), {"__init__": lambda self, *given: None, "step": step})
+
+
+def _raises_late(self: Any, t: float, *_: float) -> bool:
+    if t > 1.5:
+        raise ZeroDivisionError("no force")
+    return False
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({"detector": _detector(_raises_late)}, "detector 'Bad' raised ZeroDivisionError: no force at 1.5"),
+        ({"detector": _detector(lambda self, *_: "yes")}, "detector 'Bad' answered 'yes' at 0.0"),
+        ({"detector": _detector(lambda self, *_: None)}, "detector 'Bad' answered None at 0.0"),
+        ({"detector": _detector(lambda self, *_: sys.exit(3))}, "detector 'Bad' raised SystemExit: 3 at 0.0"),
+        ({"estimator": _estimator(lambda self, *_: (float("nan"), 1.0, True))}, "a valid airspeed is a number from 0"),
+        ({"estimator": _estimator(lambda self, *_: (30.0, float("inf"), True))}, "deviation of a valid airspeed"),
+        ({"estimator": _estimator(lambda self, *_: (30.0, 1.0))}, r"answered \(30.0, 1.0\) at 0.0"),
+        ({"estimator": _estimator(lambda self, *_: 30.0)}, "answered 30.0 at 0.0"),
+        ({"estimator": _estimator(lambda self, *_: (-3.0, 1.0, False))}, "neither airspeed nor standard deviation"),
+        ({"estimator": _estimator(lambda self, *_: (3.0, 1.0, 7))}, "valid must be True or False"),
+    ],
+)
+def test_what_raises_or_gives_nonsense_ends_the_flight_with_a_reason(
+    given: dict[str, type], reason: str, tmp_path: Path
+) -> None:
+    import re
+
+    flight = uavsim.fly("catapult", overrides=SHORT, **given)  # type: ignore[arg-type]
+    assert flight.score["outcome"] == "onboard_failed"
+    assert re.search(reason, flight.score["reason"]), flight.score["reason"]
+    assert "\n" not in flight.score["reason"]
+    flight.save(tmp_path / "flight")
+    assert load(tmp_path / "flight").score["reason"] == flight.score["reason"]
+    from uavsim.cosim import replay
+
+    again = replay(flight)
+    assert again.events == flight.events
+    assert again.estimate.equals(flight.estimate)
+    assert (again.score["outcome"], again.score["reason"]) == ("onboard_failed", flight.score["reason"])
+
+
+def test_not_a_number_that_is_not_valid_is_an_answer() -> None:
+    silent = _estimator(lambda self, *_: (float("nan"), float("nan"), False))
+    flight = uavsim.fly("catapult", overrides=SHORT, estimator=silent)
+    assert flight.score["outcome"] in ("timeout", "cruise")
+    assert flight.score["airspeed"]["valid_fraction"] == 0.0
+
+
+def test_a_plant_that_fails_ends_the_flight_with_a_reason() -> None:
+    class Breaks(Bench):
+        def step(self) -> None:
+            super().step()
+            if self.k == 1234:
+                raise RuntimeError("the arm came off")
+
+    flight = uavsim.fly("catapult", overrides=(*SHORT, "expect=completed"), plant=Breaks)
+    assert flight.score["outcome"] == "onboard_failed"
+    assert flight.score["reason"] == "plant 'Breaks' raised RuntimeError: the arm came off at 1.2340 s"
+    assert len(flight.truth) == 1235
+
+
+# -- they are refused ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (None, "there is no such file"),
+        ("x = 1\n", "registers no detector, estimator or plant"),
+        ("import nowhere_at_all\n", "mine.py, line 1: ModuleNotFoundError: No module named 'nowhere_at_all'"),
+        ("\n\ndef f(:\n", "mine.py, line 3: SyntaxError"),
+        ("x = 1\n1 / 0\n", "mine.py, line 2: ZeroDivisionError"),
+        ("import sys\nsys.exit(4)\n", "ends the program as it is imported (4)"),
+        (
+            "from uavsim.plugins import detector\n@detector('cusum')\nclass A:\n"
+            "    def step(self): ...\n    def reset(self): ...\n",
+            "there is already a detector 'cusum'",
+        ),
+        (
+            "from uavsim.plugins import detector\n@detector('a')\nclass A:\n    def reset(self): ...\n",
+            "A has no method 'step'",
+        ),
+        (
+            "from uavsim.plugins import estimator\n@estimator('a')\nclass A:\n    pass\n",
+            "A has no method 'step'",
+        ),
+        ("\x00", "mine.py"),
+    ],
+)
+def test_a_file_that_is_no_plugin_is_one_line(content: str | None, says: str, tmp_path: Path) -> None:
+    if content is not None:
+        (tmp_path / "mine.py").write_text(content, encoding="utf-8")
+    out = tmp_path / "out"
+    refused = run("fly", "catapult", "--plugin", tmp_path / "mine.py", "--out", out)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: --plugin ")
+    assert refused.stderr.count("\n") == 1, refused.stderr
+    assert says in refused.stderr
+    assert refused.stdout == ""
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        (("detector.kind=helt",), "detector.kind = 'helt' is not registered; did you mean 'held'?"),
+        (("detector.kind=mine.py",), "names a file, and a scenario runs none"),
+        (
+            ("detector.kind=held", "detector.options.levl=3"),
+            "detector.options: unknown key 'levl'; did you mean 'level'?",
+        ),
+        (("detector.kind=held", "detector.options.level=0"), "level = 0: must be a number above 0 and of at most 500"),
+        (("detector.kind=held", "detector.options.level=high"), "level = 'high': must be a number"),
+        (("detector.kind=held", "detector.threshold=30"), "detector.threshold: is not read by kind = 'held'"),
+        (("detector.options.level=3",), "detector.options: this detector has no options"),
+        (
+            ("estimator.kind=bernoulli-alone", "estimator.options.x=3"),
+            "estimator.options: this estimator has no options",
+        ),
+        (("estimator.kind=best",), "estimator.kind = 'best' is not registered; there are paper"),
+        (("plant.kind=moon",), "plant.kind = 'moon' is not registered"),
+    ],
+)
+def test_what_a_scenario_cannot_name_is_one_line(given: tuple[str, ...], says: str, plugin: Path) -> None:
+    plugins.load([str(plugin)])
+    with pytest.raises(ValueError, match=r"^--set: ") as caught:
+        load_scenario("catapult", overrides=given)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_unknown_kind_says_how_one_is_registered() -> None:
+    with pytest.raises(PluginError, match=r"--plugin FILE\.py .* entry point group uavsim\.detectors"):
+        find("detector", "nobody")
+
+
+def test_a_scenario_never_runs_a_file(tmp_path: Path) -> None:
+    mark = tmp_path / "ran"
+    (tmp_path / "evil.py").write_text(f"open({str(mark)!r}, 'w')\n", encoding="utf-8")
+    for kind in ("evil.py", "evil", str(tmp_path / "evil.py"), "evil:Detector"):
+        (tmp_path / "s.toml").write_text(f"[detector]\nkind = {json.dumps(kind)}\n", encoding="utf-8")
+        refused = run("fly", "s.toml", cwd=tmp_path)
+        assert refused.returncode == 2
+        assert "Error: s.toml: detector.kind = " in refused.stderr
+    assert not mark.exists()
+
+
+# -- packages --------------------------------------------------------------------------------------------------------
+
+POINTS = {
+    "good": "held = good_package.parts:Held",
+    "broken": "broken = broken_package:Nothing",
+}
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """Two packages as pip leaves them: one that is good, one that cannot be imported."""
+    for name, point in POINTS.items():
+        package = tmp_path / f"{name}_package"
+        package.mkdir()
+        (package / "__init__.py").write_text("" if name == "good" else "raise ImportError('no such library')\n")
+        info = tmp_path / f"{name}_package-1.4.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}-package\nVersion: 1.4\n")
+        (info / "entry_points.txt").write_text(f"[uavsim.detectors]\n{point}\n")
+        (info / "top_level.txt").write_text(f"{name}_package\n")
+        (info / "RECORD").write_text(f"{name}_package/__init__.py,,\n")
+    (tmp_path / "good_package" / "parts.py").write_text(PLUGIN, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    yield SimpleNamespace(folder=tmp_path)
+    for name in [name for name in sys.modules if name.split(".")[0] in ("good_package", "broken_package")]:
+        del sys.modules[name]
+
+
+def test_only_the_package_that_is_named_is_imported(installed: SimpleNamespace) -> None:
+    listed = {s.name: s for s in plugins.sources("detector")}
+    assert (listed["broken"].source, listed["broken"].version) == ("broken_package:Nothing", "1.4")
+    assert not {"good_package", "broken_package"} & set(sys.modules)
+    scenario = Scenario.from_dict({"detector": {"kind": "held"}})
+    assert "good_package" in sys.modules
+    assert "broken_package" not in sys.modules
+    (source,) = scenario.plugins
+    assert (source.name, source.source, source.version) == ("held", "good-package: good_package.parts", "1.4")
+    with pytest.raises(ValueError, match=r"'broken' of broken-package: .*ImportError: no such library"):
+        Scenario.from_dict({"detector": {"kind": "broken"}})
+
+
+# -- the list --------------------------------------------------------------------------------------------------------
+
+
+def test_the_list_names_ours_and_theirs(plugin: Path) -> None:
+    listed = run("plugins", "--plugin", plugin)
+    assert listed.returncode == 0
+    rows = [line.split() for line in listed.stdout.splitlines()]
+    assert ["detector", "cusum", "uavsim.onboard.launch.cusum", uavsim.__version__] in rows
+    assert any(row[:4] == ["detector", "held", "mine.py", "SHA-256"] for row in rows)
+    assert {row[0] for row in rows} == {"detector", "estimator", "plant"}
+
+
+# -- operating curves ------------------------------------------------------------------------------------------------
+
+
+def test_a_detector_without_a_loop_is_swept_and_tuned_all_the_same(plugin: Path, tmp_path: Path) -> None:
+    out = tmp_path / "roc"
+    given = ("--plugin", plugin, "--detectors", "held,cusum", "--hours", "0.05", "--trials", "20", "--cells", "2")
+    curves = run("roc", *given, "--out", out)
+    assert curves.returncode == 0, curves.stderr
+    import pandas as pd
+
+    rows = pd.read_csv(out / "roc.csv")
+    held = rows[rows["detector"] == "held"]
+    assert held["key"].unique().tolist() == ["options.level"]
+    assert held["level"].tolist() == pytest.approx(
+        [40.0 * f for f in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.4, 1.6)]
+    )
+    assert held["pd"].max() > 0.9
+    assert (out / "plots" / "levels.png").is_file()
+
+
+def test_a_detector_without_a_level_has_one_point() -> None:
+    from uavsim.studies.operating import levels
+
+    plugins.detector("yes")(_detector(lambda self, *_: False))
+    assert [factor for factor, _ in levels(DetectorSettings(kind="yes"))] == [1.0]
+
+
+def test_the_hours_that_plain_python_cannot_do_are_left_out_and_told(plugin: Path) -> None:
+    from uavsim.studies import reach
+
+    plugins.load([str(plugin)])
+    plain = reach.plain([DetectorSettings(kind="held"), DetectorSettings(kind="cusum")], 1000.0)
+    assert [one.kind for one in plain] == ["held"]
+    asked = reach.Work(1000.0, 100_000, 1000)
+    done = reach.within_reach(asked, detectors=11, compared=30, rate=1000.0)
+    assert done.hours < asked.hours
+    assert reach.told(asked, done, reach.why(plain)).startswith(
+        "held: without a compiled loop: so that it ends in about ten minutes, "
+    )
