@@ -4,12 +4,14 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m pip
 
-.PHONY: help fly test lint validate bench aircraft clean
+.PHONY: help fly test lint validate mutants golden bench aircraft clean
 
 help:
 	@echo "make fly       install, then fly the scenario 'catapult' with its score and plots"
 	@echo "make test      every check and test (ruff, mypy, import-linter, pytest)"
 	@echo "make validate  the statistical checks over many seeds, and the long attacks (over half an hour)"
+	@echo "make mutants   how many of 300 small errors the tests see (half an hour)"
+	@echo "make golden    fly the short flights whose figures are kept, and keep them anew"
 	@echo "make bench     what a step costs"
 	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 (installs AeroSandbox)"
 	@echo "make clean     remove the environment and caches"
@@ -28,6 +30,12 @@ lint: $(VENV)/.dev
 
 validate: $(VENV)/.dev
 	$(BIN)/python -m pytest -q -m slow
+
+mutants: $(VENV)/.dev
+	$(BIN)/python scripts/mutants.py --out output/mutants.json
+
+golden: $(VENV)/.dev
+	$(BIN)/python tests/golden_flights.py
 
 bench: $(VENV)/.fly
 	$(BIN)/uavsim bench

@@ -27,7 +27,8 @@ Order of errors
 One description, two readers
     `preset("lsm6dso32")` is an `AccelerometerDescription`, `preset("bmp390")` a `PressureDescription`: frozen numbers
     of which the simulator draws a unit and a filter takes its noise model. Settings (`AccelerometerSettings`,
-    `AirDataSettings`) say what a scenario may choose; their `description()` is the part as chosen.
+    `AirDataSettings`) say what a scenario may choose; their `description()` is the part as chosen. What follows from
+    both for the readings, the drawn unit left out, is in `sensors.knowledge`.
 
 Randomness
     `Streams(seed, index)` gives each source of noise its own named stream: adding one leaves all others as they were.
@@ -36,9 +37,9 @@ What is not a number
     A truth that is NaN gives a reading that is NaN, never an exception; once it is a number again, readings are, too.
 
 Names
-    presets, preset, promised · Streams · Accelerometer, Vibration · PressureSensor, AirDataHead, head_noise ·
-    record_at_rest, read_bench_log · the settings and descriptions. The package imports numpy, pandas, scipy and
-    allantools late, nothing of uavsim.
+    presets, preset, promised · Streams · Accelerometer, Vibration · PressureSensor, AirDataHead, membranes ·
+    known_of_accelerometer, known_of_head · record_at_rest, read_bench_log · the settings and descriptions. The package
+    imports numpy; pandas and scipy late, and nothing of uavsim.
 """
 
 from importlib import import_module
@@ -50,7 +51,8 @@ if TYPE_CHECKING:
     from sensors.bench import record_at_rest
     from sensors.bench_log import read_bench_log
     from sensors.catalogue import preset, presets
-    from sensors.head import AirDataHead, head_noise
+    from sensors.head import AirDataHead, membranes
+    from sensors.knowledge import AccelerometerKnowledge, HeadKnowledge, known_of_accelerometer, known_of_head
     from sensors.pressure import PressureSensor
     from sensors.pressure_description import PressureDescription, PressureErrors, PressureMode
     from sensors.promise import promised
@@ -62,9 +64,11 @@ __all__ = [
     "Accelerometer",
     "AccelerometerDescription",
     "AccelerometerErrors",
+    "AccelerometerKnowledge",
     "AccelerometerSettings",
     "AirDataHead",
     "AirDataSettings",
+    "HeadKnowledge",
     "PressureDescription",
     "PressureErrors",
     "PressureMode",
@@ -73,7 +77,9 @@ __all__ = [
     "Streams",
     "Vibration",
     "VibrationSettings",
-    "head_noise",
+    "known_of_accelerometer",
+    "known_of_head",
+    "membranes",
     "preset",
     "presets",
     "promised",
@@ -85,9 +91,11 @@ _HOME = {
     "Accelerometer": "accelerometer",
     "AccelerometerDescription": "accelerometer_description",
     "AccelerometerErrors": "accelerometer_description",
+    "AccelerometerKnowledge": "knowledge",
     "AccelerometerSettings": "settings",
     "AirDataHead": "head",
     "AirDataSettings": "settings",
+    "HeadKnowledge": "knowledge",
     "PressureDescription": "pressure_description",
     "PressureErrors": "pressure_description",
     "PressureMode": "pressure_description",
@@ -96,7 +104,9 @@ _HOME = {
     "Streams": "streams",
     "Vibration": "vibration",
     "VibrationSettings": "settings",
-    "head_noise": "head",
+    "known_of_accelerometer": "knowledge",
+    "known_of_head": "knowledge",
+    "membranes": "head",
     "preset": "catalogue",
     "presets": "catalogue",
     "promised": "promise",

@@ -8,17 +8,48 @@ Every term has a factor on what the datasheet says of it (`AccelerometerErrors`)
 bad. The factors become part of the description, so the simulated unit and a filter go by the same numbers.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import inf, sqrt
 from typing import TypeVar
 
 from sensors.choice import choose
 from sensors.noise import enbw
-from sensors.unit import G0, DriftModel, Factor, Triple
+from sensors.rules import listed, number
+from sensors.term import percent, scaled, term
+from sensors.unit import CLOCK, CORRELATION, G0, DriftModel, Factor, Triple
 
 Item = TypeVar("Item")
 
+UG, MG = 1e-6 * G0, 1e-3 * G0  # µg and mg, m/s²
+
+OFFSET_MG = listed(number(0.0, 1e5), count=3)  # mg: 100 g; a part of ±400 g is off by 1 g
+OFFSET_TC_MG = listed(number(0.0, 1e3), count=3)  # mg/K: 1 g/K, of which the range must hold 100 K (`datasheet_check`)
+SCALE = number(0.0, 50.0)  # %: at 100 % the axis would read nothing, or the other way round
+SCALE_TC = number(0.0, 0.3)  # %/K: 30 % over the 100 K between the coldest and the warmest day
+CROSS_AXIS = number(0.0, 50.0)  # %: the sine of 30°, where an axis would not be told from its neighbour
+NONLINEARITY = number(0.0, 20.0)  # % of the range: the curve k₃ u³ turns back beyond 25 %
+RECTIFICATION = number(0.0, 1e5)  # µg/g²: 0.1 g of offset from 1 g rms; the worst parts have 1000
+DRIFT = number(0.0, 1e6)  # µg: 1 g of bias that wanders; parts have below 1000
+WALK = number(0.0, 1e6)  # µg/√s: 1 g after a second; parts have below 100
+
 UNQUANTISED_BITS = 40  # stand for no quantisation: steps of range/2^39, 6e-10 m/s² at ±32 g
+
+
+def milli_g(values: Sequence[float]) -> Triple:
+    """Return three values in mg, m/s²."""
+    x, y, z = values
+    return x * MG, y * MG, z * MG
+
+
+def micro_g(value: float) -> float:
+    """Return a value in µg, m/s²."""
+    return value * UG
+
+
+def per_g2(value: float) -> float:
+    """Return a value in µg/g², 1/(m/s²)."""
+    return value * UG / G0**2
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +98,7 @@ class AccelerometerErrors:
     quantisation: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AccelerometerDescription:
     """A three-axis accelerometer at one range, rate and filter; SI, but for names that end in _g.
 
@@ -124,24 +155,24 @@ class AccelerometerDescription:
     bandwidths: tuple[tuple[float, ...], ...]
     poles: int
     noise_densities: tuple[Triple, ...]
-    noise_rate_floor: float
-    bias_sd: Triple
-    bias_limit: Triple
-    bias_tc_sd: Triple
-    bias_tc_limit: Triple
-    scale_sd: float
-    scale_limit: float
-    scale_tc_sd: float
-    scale_tc_limit: float
-    cross_axis_sd: float
-    cross_axis_limit: float
-    nonlinearity_sd: float
-    rectification_sd: float
-    drift_sd: float
-    correlation_time: float
-    random_walk: float
-    rate_sd: float
-    rate_limit: float
+    noise_rate_floor: float = term("noise_rate_floor", number(0.0, 40_000.0), default=0.0)  # Hz: a rate of the part
+    bias_sd: Triple = term("offset_mg", OFFSET_MG, milli_g, factor="bias")
+    bias_limit: Triple = term("offset_limit_mg", OFFSET_MG, milli_g, factor="bias")
+    bias_tc_sd: Triple = term("offset_tc_mg", OFFSET_TC_MG, milli_g, factor="temperature")
+    bias_tc_limit: Triple = term("offset_tc_limit_mg", OFFSET_TC_MG, milli_g, factor="temperature")
+    scale_sd: float = term("scale_percent", SCALE, percent, factor="scale")
+    scale_limit: float = term("scale_limit_percent", SCALE, percent, factor="scale")
+    scale_tc_sd: float = term("scale_tc_percent", SCALE_TC, percent, factor="temperature", default=0.0)
+    scale_tc_limit: float = term("scale_tc_limit_percent", SCALE_TC, percent, factor="temperature", default=inf)
+    cross_axis_sd: float = term("cross_axis_percent", CROSS_AXIS, percent, factor="cross_axis", default=0.0)
+    cross_axis_limit: float = term("cross_axis_limit_percent", CROSS_AXIS, percent, factor="cross_axis", default=inf)
+    nonlinearity_sd: float = term("nonlinearity_percent", NONLINEARITY, percent, factor="nonlinearity", default=0.0)
+    rectification_sd: float = term("rectification_ug", RECTIFICATION, per_g2, factor="nonlinearity", default=0.0)
+    drift_sd: float = term("drift_ug", DRIFT, micro_g, factor="drift")
+    correlation_time: float = term("correlation_time", CORRELATION)
+    random_walk: float = term("random_walk_ug", WALK, micro_g, factor="random_walk")
+    rate_sd: float = term("rate_percent", CLOCK, percent, factor="clock", default=0.0)
+    rate_limit: float = term("rate_limit_percent", CLOCK, percent, factor="clock", default=inf)
     errors: AccelerometerErrors = AccelerometerErrors()
 
     def select(
@@ -168,22 +199,7 @@ class AccelerometerDescription:
         return replace(
             self,
             noise_densities=tuple(_times(density, noise_scale) for density in self.noise_densities),
-            bias_sd=_times(self.bias_sd, e.bias),
-            bias_limit=_times(self.bias_limit, e.bias),
-            bias_tc_sd=_times(self.bias_tc_sd, e.temperature),
-            bias_tc_limit=_times(self.bias_tc_limit, e.temperature),
-            scale_sd=self.scale_sd * e.scale,
-            scale_limit=self.scale_limit * e.scale,
-            scale_tc_sd=self.scale_tc_sd * e.temperature,
-            scale_tc_limit=self.scale_tc_limit * e.temperature,
-            cross_axis_sd=self.cross_axis_sd * e.cross_axis,
-            cross_axis_limit=self.cross_axis_limit * e.cross_axis,
-            nonlinearity_sd=self.nonlinearity_sd * e.nonlinearity,
-            rectification_sd=self.rectification_sd * e.nonlinearity,
-            drift_sd=self.drift_sd * e.drift,
-            random_walk=self.random_walk * e.random_walk,
-            rate_sd=self.rate_sd * e.clock,
-            rate_limit=self.rate_limit * e.clock,
+            **scaled(self, e),
             errors=e,
         )
 

@@ -11,20 +11,18 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from sensors.accelerometer_description import AccelerometerDescription
+from sensors import term
+from sensors.accelerometer_description import AccelerometerDescription, micro_g
 from sensors.choice import choose, shown
 from sensors.data_files import parse_toml, read_text
 from sensors.datasheet_check import check
-from sensors.pressure_description import PressureDescription, PressureMode
+from sensors.pressure_description import PressureDescription, PressureMode, pair
 from sensors.sheet import Sheet
-from sensors.unit import G0, Triple
+from sensors.unit import Triple
 
 Description = AccelerometerDescription | PressureDescription
 
 FOLDER = Path(__file__).parent / "datasheets"
-
-UG = 1e-6 * G0  # µg, m/s²
-MG = 1e-3 * G0  # mg, m/s²
 
 
 def presets() -> list[str]:
@@ -151,26 +149,14 @@ def _accelerometer(name: str, document: str, sheet: dict[str, Any]) -> Accelerom
         bandwidths=tuple(tuple(float(width) for width in row) for row in v["bandwidth_hz"]),
         poles=v["poles"],
         bits=tuple(v["bits"]),
-        noise_densities=tuple(_triple(row, UG) for row in v["noise_density_ug"]),
-        noise_rate_floor=float(v["noise_rate_floor"]),
-        bias_sd=_triple(v["offset_mg"], MG),
-        bias_limit=_triple(v["offset_limit_mg"], MG),
-        bias_tc_sd=_triple(v["offset_tc_mg"], MG),
-        bias_tc_limit=_triple(v["offset_tc_limit_mg"], MG),
-        scale_sd=v["scale_percent"] / 100,
-        scale_limit=v["scale_limit_percent"] / 100,
-        scale_tc_sd=v["scale_tc_percent"] / 100,
-        scale_tc_limit=v["scale_tc_limit_percent"] / 100,
-        cross_axis_sd=v["cross_axis_percent"] / 100,
-        cross_axis_limit=v["cross_axis_limit_percent"] / 100,
-        nonlinearity_sd=v["nonlinearity_percent"] / 100,
-        rectification_sd=v["rectification_ug"] * UG / G0**2,
-        drift_sd=v["drift_ug"] * UG,
-        correlation_time=float(v["correlation_time"]),
-        random_walk=v["random_walk_ug"] * UG,
-        rate_sd=v["rate_percent"] / 100,
-        rate_limit=v["rate_limit_percent"] / 100,
+        noise_densities=tuple(_densities(row) for row in v["noise_density_ug"]),
+        **term.read(AccelerometerDescription, v),
     ).select(range_g=v["default_range_g"], rate=v["default_rate"], filter=v["default_filter"])
+
+
+def _densities(row: list[float]) -> Triple:
+    x, y, z = row
+    return micro_g(x), micro_g(y), micro_g(z)
 
 
 def _pressure(name: str, document: str, sheet: dict[str, Any]) -> PressureDescription:
@@ -183,25 +169,9 @@ def _pressure(name: str, document: str, sheet: dict[str, Any]) -> PressureDescri
         mode=modes[0],
         iir_weights=tuple(zip(v["iir_coefficients"], map(float, v["iir_weights"]), strict=True)),
         iir=0,
-        range=_pair(v["range_pa"]),
+        range=pair(v["range_pa"]),
         reference_pressure=float(v["reference_pressure_pa"]),
-        offset_sd=float(v["offset_pa"]),
-        offset_limit=float(v["offset_limit_pa"]),
-        offset_tc_sd=v["offset_tc_pa"],
-        offset_tc_limit=v["offset_tc_limit_pa"],
-        solder=_pair(v["solder_pa"]),
-        acceleration_sd=v["acceleration_pa"],
-        acceleration_limit=v["acceleration_limit_pa"],
-        scale_sd=v["scale"],
-        scale_limit=v["scale_limit"],
-        rate_sd=v["rate_percent"] / 100,
-        rate_limit=v["rate_limit_percent"] / 100,
-        drift_sd=v["drift_pa"],
-        correlation_time=float(v["correlation_time"]),
-        random_walk=v["random_walk_pa"],
-        temperature_offset_sd=v["temperature_offset_k"],
-        temperature_offset_limit=v["temperature_offset_limit_k"],
-        temperature_resolution=v["temperature_resolution_k"],
+        **term.read(PressureDescription, v),
     ).select(mode=v["default_mode"])
 
 
@@ -214,16 +184,6 @@ def _mode(mode: dict[str, Any]) -> PressureMode:
         conversion_time=mode["conversion_ms"] / 1000,
         rate=float(mode["rate"]),
     )
-
-
-def _triple(values: list[float], unit: float) -> Triple:
-    x, y, z = values
-    return x * unit, y * unit, z * unit
-
-
-def _pair(values: list[float]) -> tuple[float, float]:
-    low, high = values
-    return float(low), float(high)
 
 
 def _of_kind(kind: type[Description]) -> str:

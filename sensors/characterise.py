@@ -22,6 +22,7 @@ from math import log10
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sensors.allan_record import degrees_of_freedom, interval, overlapping
 from sensors.noise_fit import Drift, NoiseFit, fit_noise
 from sensors.promise import Promise, promised, promises
 
@@ -275,7 +276,7 @@ def allan_deviation(values: ArrayLike, rate: float, multiples: Sequence[int] | N
     """
     series = np.asarray(values, dtype=float)
     m = _multiples(1, max(series.size // 4, 1)) if multiples is None else list(multiples)
-    deviation, size = _overlapping(series, m), [series.size] * len(m)
+    deviation, size = overlapping(series, m), [series.size] * len(m)
     return _with_intervals(np.array(m) / rate, deviation, m, size)
 
 
@@ -289,7 +290,7 @@ def _allan(series: Sequence[Array], rate: float) -> Allan:
         last = level == len(series) - 1
         m = _multiples(FIRST if level else 1, values.size // 4 if last else RATIO * FIRST - 1)
         tau += [entries * RATIO**level / rate for entries in m]
-        deviation += list(_overlapping(values, m))
+        deviation += list(overlapping(values, m))
         multiples += m
         sizes += [values.size] * len(m)
     return _with_intervals(np.array(tau), np.array(deviation), multiples, sizes)
@@ -302,24 +303,10 @@ def _multiples(first: int, last: int) -> list[int]:
     return sorted(m for m in chosen if first <= m <= last)
 
 
-def _overlapping(values: Array, multiples: Sequence[int]) -> Array:
-    """Overlapping Allan deviation at averaging times of whole readings."""
-    import allantools  # late: it brings scipy's statistics
-
-    deviation: Array = allantools.oadev(values, rate=1.0, data_type="freq", taus=np.array(multiples, dtype=float))[1]
-    return deviation
-
-
 def _with_intervals(tau: Array, deviation: Array, multiples: Sequence[int], sizes: Sequence[int]) -> Allan:
-    from allantools.ci import confidence_interval, edf_greenhall
-
-    edf = np.array([
-        edf_greenhall(alpha, 2, m, size + 1, overlapping=True)
-        for alpha, m, size in zip(_exponents(tau, deviation), multiples, sizes, strict=True)
-    ])  # fmt: skip
-    bounds = [confidence_interval(d, f, CONFIDENCE) for d, f in zip(deviation, edf, strict=True)]
-    low, high = np.array(bounds).T
-    return Allan(tau, deviation, low, high, edf)
+    points = zip(_exponents(tau, deviation), multiples, sizes, strict=True)
+    edf = np.array([degrees_of_freedom(*point) for point in points])
+    return Allan(tau, deviation, *interval(deviation, edf, CONFIDENCE), edf)
 
 
 def _exponents(tau: Array, deviation: Array) -> list[int]:

@@ -1,7 +1,8 @@
 """Whether a preset's file says what a part is, completely and in the right units: looked at when it is read.
 
-Keys come first: all that are unknown or missing are named in one line. Then each value by itself
-(`sensors.datasheet_bounds`), its sources, and then what has to fit together, each in one line that names the key:
+Keys come first: all that are unknown or missing are named in one line; the terms that have a default in the description
+may be missing. Then each value by itself (`sensors.datasheet_bounds`), its sources, and then what has to fit together,
+each in one line that names the key:
 
     bandwidth ≤ rate/2                  a sampled signal has no more
     limit ≥ standard deviation          a unit beyond the limit is drawn again: below it that would not end
@@ -15,8 +16,12 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from sensors.accelerometer_description import AccelerometerDescription
 from sensors.choice import choose, nearest, shown
-from sensors.datasheet_bounds import ACCELEROMETER, MODE, NAMES, PRESSURE, SENTENCE, Rule, listed, table, text
+from sensors.datasheet_bounds import ACCELEROMETER, MODE, NAMES, PRESSURE, SENTENCE
+from sensors.pressure_description import PressureDescription
+from sensors.rules import Rule, listed, table, text
+from sensors.term import optional
 
 KINDS = ("accelerometer", "pressure")
 HEAD_KEYS = ("kind", "part", "document", "values", "sources")
@@ -28,6 +33,8 @@ SLOWEST = 1e-6  # of the rate: a low-pass that takes a million readings to settl
 UNITS = {"g": "g", "mg": "mg", "ug": "µg", "percent": "%", "hz": "Hz", "pa": "Pa", "k": "K", "ms": "ms"}
 NOT_IN_THE_NAME = {"correlation_time": "s", "scale": "a fraction", "scale_limit": "a fraction", "bits": "bit"}
 OTHER_SUFFIXES = ("hpa", "kpa", "mbar", "bar", "khz", "ppm", "fraction", "s", "us", "c", "degc", "mps2", "ms2", "m")
+
+OPTIONAL = optional(AccelerometerDescription), optional(PressureDescription)  # keys that a file may lack
 
 TOLD = 3  # unknown keys that are told one by one
 
@@ -90,8 +97,10 @@ def _places(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool) ->
     values, modes, sources = sheet.get("values", {}), sheet.get("modes", []), sheet.get("sources", {})
     table("values", values)
     table("sources", sources)
-    if "values" in sheet:
-        yield Place("values.", values, rules, rules)
+    wanted = [key for key in rules if key not in OPTIONAL[pressure]]
+    misspelt = any(key not in head for key in sheet)  # perhaps a table that is missing
+    if "values" in sheet or not misspelt:
+        yield Place("values.", values, wanted, rules)
     sourced, known = [key for key in rules if key in values], list(rules)
     if pressure and "modes" in sheet:
         listed(table)("modes", modes)
@@ -99,6 +108,8 @@ def _places(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool) ->
             yield Place("modes.", mode, MODE, MODE, f" (mode {number})")
         sourced += [f"modes.{key}" for key in MODE if any(key in mode for mode in modes)]
         known += [f"modes.{key}" for key in MODE]
+    elif pressure and not misspelt:
+        yield Place("modes.", {}, MODE, MODE)
     if "sources" in sheet:
         yield Place("sources.", sources, sourced, known)
 
@@ -123,7 +134,8 @@ def _stem(key: str) -> str:
 
 def _entries(where: str, values: dict[str, Any], rules: dict[str, Rule]) -> None:
     for key, rule in rules.items():
-        rule(f"{where}{key}", values[key])
+        if key in values:
+            rule(f"{where}{key}", values[key])
 
 
 # -- what has to fit together ----------------------------------------------------------------------------------------
@@ -134,6 +146,8 @@ def _limits(values: dict[str, Any]) -> None:
         if "limit" not in key.split("_"):
             continue
         of = key.replace("_limit", "")
+        if of not in values:
+            raise ValueError(f"key values.{key} limits values.{of}, which is missing")
         pairs = zip(_as_list(values[of]), _as_list(limit), strict=True)
         if any(bound < sd for sd, bound in pairs):
             raise ValueError(f"key values.{key} is below values.{of}, the standard deviation that it limits")
@@ -207,7 +221,8 @@ def _fits_pressure(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
             raise ValueError(f"key modes.resolution_pa of mode {shown(mode['name'])} is wider than range_pa")
     if not low <= v["reference_pressure_pa"] <= high:
         raise ValueError("key values.reference_pressure_pa is outside range_pa")
-    if v["solder_pa"][0] > v["solder_pa"][1]:
+    least, greatest = v.get("solder_pa", (0.0, 0.0))
+    if least > greatest:
         raise ValueError("key values.solder_pa must have the least shift first")
 
 

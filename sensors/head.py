@@ -20,7 +20,6 @@ with x in steps and Σ' the trapezoidal sum between whole steps: vibration on th
 part, and a pressure that is no number spoils the windows it is in and no others.
 """
 
-from dataclasses import replace
 from math import inf, nan
 
 from sensors.clock import Clock
@@ -34,8 +33,6 @@ from sensors.unit import Triple, Unit
 
 Row = tuple[float, float, float, float, float, float]
 
-AFT, DOWN = (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)  # tubes from the total and the static port to their sensors
-FORWARD = (1.0, 0.0, 0.0)  # normal of the total sensor's membrane; DOWN is the static sensor's (the published head)
 NO_FLOW: Flow = (nan,) * 7  # until somebody says
 NO_AIR: Air = (nan,) * 3
 MOST_REMEMBERED = 4096  # steps: conversions are made at the latest when so many wait for a poll
@@ -95,8 +92,9 @@ class AirDataHead:
         name: str = "air_data",
     ) -> None:
         self._settings = settings
-        self.total = _sensor(settings.total, FORWARD, settings.thermal, streams, unit, f"{name}.total")
-        self.static = _sensor(settings.static, DOWN, settings.thermal, streams, unit, f"{name}.static")
+        forward, down = settings.normals()
+        self.total = _sensor(settings.total, forward, settings.thermal, streams, unit, f"{name}.total")
+        self.static = _sensor(settings.static, down, settings.thermal, streams, unit, f"{name}.static")
         self.covered_until = covered_until
         poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
         self.due, self._next_poll = poll.due, poll.later
@@ -225,15 +223,12 @@ class AirDataHead:
         s = self._settings
 
         def line(tube: TubeSettings, direction: Triple, faults: tuple[PortFault, ...]) -> Line | None:
-            tube = replace(tube, length=s.pipe) if s.pipe > 0.0 else tube
             if tube.length == 0.0 and not faults:
                 return None
             return Line(tube, direction, faults, self._dt, pressure=pressure, temperature=temperature)
 
-        return (
-            line(s.total_port.tube, AFT, s.total_port.faults),
-            line(s.static_port.tube, DOWN, s.static_port.faults),
-        )
+        total, static = s.tubes()
+        return line(*total, s.total_port.faults), line(*static, s.static_port.faults)
 
 
 def _sensor(
@@ -245,17 +240,17 @@ def _sensor(
         name=name,
         offset_pa=settings.offset_pa,
         unit=settings.unit if unit is None else unit,
-        normal=normal if settings.normal is None else settings.normal,
+        normal=normal,
         rate_error_percent=settings.rate_error_percent,
         thermal=thermal,
         faults=settings.faults,
     )
 
 
-def head_noise(settings: AirDataSettings) -> tuple[float, float, float]:
-    """Return what a filter may know of the head: standard deviations (total Pa, static Pa, temperature K) a reading.
+def membranes(settings: AirDataSettings, streams: Streams, name: str = "air_data") -> tuple[Triple, Triple]:
+    """Return what the drawn units' membranes make of specific force, body axes, Pa/(m/s²): total, static.
 
-    From the same description that the units are drawn from, `noise_scale` and digital filter included.
+    For those who calibrate the units that fly; the parameters are those of `AirDataHead`.
     """
-    total, static = settings.total.description(), settings.static.description()
-    return total.noise_sd, static.noise_sd, static.temperature_noise_sd
+    head = AirDataHead(settings, streams, name=name)
+    return head.total.acceleration, head.static.acceleration

@@ -7,14 +7,33 @@ Every term has a factor on what the datasheet says of it (`PressureErrors`): 0 s
 The factors become part of the description, so the simulated unit and a filter go by the same numbers.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import acos, pi, sqrt
+from math import acos, inf, pi, sqrt
 
 from sensors.choice import choose
-from sensors.unit import DriftModel, Factor
+from sensors.rules import listed, number
+from sensors.term import percent, scaled, term
+from sensors.unit import CLOCK, CORRELATION, DriftModel, Factor
+
+OFFSET_PA = number(0.0, 2e4)  # Pa: a fifth of the atmosphere; cheap parts are off by 1500
+OFFSET_TC_PA = number(0.0, 100.0)  # Pa/K: 10 kPa over 100 K; the worst parts have 15
+SOLDER_PA = listed(number(-2e4, 2e4), count=2)  # Pa: as the offset
+ACCELERATION_PA = number(0.0, 100.0)  # Pa/(m/s²): 1 kPa/g, a membrane of 100 kg/m²; parts have below 1
+SCALE = number(0.0, 0.5)  # a fraction: at 1 it would read nothing
+DRIFT_PA = number(0.0, 1e4)  # Pa: a tenth of the atmosphere, wandering; parts have below 10
+WALK_PA = number(0.0, 1e3)  # Pa/√s: 1 kPa after a second; parts have below 0.1
+WARMTH = number(0.0, 50.0)  # K: a thermometer that is further off tells no air from any other
+RESOLUTION_K = number(1e-6, 10.0)  # K: below its noise by far, to a thermometer in tens of kelvin
 
 UNQUANTISED_STEP = 1e-9  # Pa and K: stands for no quantisation
 FASTEST_FILTER = 2.0 * (sqrt(2.0) - 1.0)  # a of the y += a (x - y) that is 3 dB down at half the rate; above, nowhere
+
+
+def pair(values: Sequence[float]) -> tuple[float, float]:
+    """Return the two values of a list."""
+    low, high = values
+    return float(low), float(high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +110,7 @@ class PressureMode:
     rate: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PressureDescription:
     """An absolute pressure sensor with thermometer in one mode; SI throughout.
 
@@ -145,23 +164,23 @@ class PressureDescription:
     iir: int
     range: tuple[float, float]
     reference_pressure: float
-    offset_sd: float
-    offset_limit: float
-    offset_tc_sd: float
-    offset_tc_limit: float
-    solder: tuple[float, float]
-    acceleration_sd: float
-    acceleration_limit: float
-    scale_sd: float
-    scale_limit: float
-    rate_sd: float
-    rate_limit: float
-    drift_sd: float
-    correlation_time: float
-    random_walk: float
-    temperature_offset_sd: float
-    temperature_offset_limit: float
-    temperature_resolution: float
+    offset_sd: float = term("offset_pa", OFFSET_PA, factor="offset")
+    offset_limit: float = term("offset_limit_pa", OFFSET_PA, factor="offset")
+    offset_tc_sd: float = term("offset_tc_pa", OFFSET_TC_PA, factor="temperature")
+    offset_tc_limit: float = term("offset_tc_limit_pa", OFFSET_TC_PA, factor="temperature")
+    solder: tuple[float, float] = term("solder_pa", SOLDER_PA, pair, factor="solder", default=(0.0, 0.0))
+    acceleration_sd: float = term("acceleration_pa", ACCELERATION_PA, factor="acceleration", default=0.0)
+    acceleration_limit: float = term("acceleration_limit_pa", ACCELERATION_PA, factor="acceleration", default=inf)
+    scale_sd: float = term("scale", SCALE, factor="scale")
+    scale_limit: float = term("scale_limit", SCALE, factor="scale")
+    rate_sd: float = term("rate_percent", CLOCK, percent, factor="clock", default=0.0)
+    rate_limit: float = term("rate_limit_percent", CLOCK, percent, factor="clock", default=inf)
+    drift_sd: float = term("drift_pa", DRIFT_PA, factor="drift")
+    correlation_time: float = term("correlation_time", CORRELATION)
+    random_walk: float = term("random_walk_pa", WALK_PA, factor="random_walk")
+    temperature_offset_sd: float = term("temperature_offset_k", WARMTH, factor="thermometer")
+    temperature_offset_limit: float = term("temperature_offset_limit_k", WARMTH, factor="thermometer")
+    temperature_resolution: float = term("temperature_resolution_k", RESOLUTION_K)
     noise_scale: float = 1.0
     errors: PressureErrors = PressureErrors()
 
@@ -179,25 +198,10 @@ class PressureDescription:
     def scaled(self, noise_scale: float, errors: PressureErrors | None = None) -> "PressureDescription":
         """Return a part with its white noise and its errors times these factors, for the unit and for a filter."""
         e = PressureErrors() if errors is None else errors
-        low, high = self.solder
         return replace(
             self,
             noise_scale=self.noise_scale * noise_scale,
-            offset_sd=self.offset_sd * e.offset,
-            offset_limit=self.offset_limit * e.offset,
-            offset_tc_sd=self.offset_tc_sd * e.temperature,
-            offset_tc_limit=self.offset_tc_limit * e.temperature,
-            solder=(low * e.solder, high * e.solder),
-            acceleration_sd=self.acceleration_sd * e.acceleration,
-            acceleration_limit=self.acceleration_limit * e.acceleration,
-            scale_sd=self.scale_sd * e.scale,
-            scale_limit=self.scale_limit * e.scale,
-            rate_sd=self.rate_sd * e.clock,
-            rate_limit=self.rate_limit * e.clock,
-            drift_sd=self.drift_sd * e.drift,
-            random_walk=self.random_walk * e.random_walk,
-            temperature_offset_sd=self.temperature_offset_sd * e.thermometer,
-            temperature_offset_limit=self.temperature_offset_limit * e.thermometer,
+            **scaled(self, e),
             errors=e,
         )
 

@@ -4,7 +4,7 @@ Parts, rates, assumptions about each of their errors, where they sit, vibration,
 sensors, and what breaks when: plain frozen dataclasses with bounds; whoever reads a file checks it against them.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Interval
@@ -25,6 +25,9 @@ Amplitude = Annotated[float, Interval(ge=-1000.0, le=1000.0)]  # g; nothing that
 Density = Annotated[float, Interval(gt=0.0, le=1000.0)]  # g²/Hz, 700 g rms over the plant's 500 Hz
 Offset = Annotated[float, Interval(ge=-10_000.0, le=10_000.0)]  # m/s², 1000 g
 FOREVER = 3600.0  # s, the longest flight
+
+AFT, DOWN = (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)  # tubes from the total and the static port to their sensors
+FORWARD = (1.0, 0.0, 0.0)  # normal of the total sensor's membrane; DOWN is the static sensor's (the published head)
 
 
 @dataclass(frozen=True, slots=True)
@@ -405,3 +408,17 @@ class AirDataSettings:
     pipe: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.0
     acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
+
+    def tubes(self) -> tuple[tuple[TubeSettings, Vector], tuple[TubeSettings, Vector]]:
+        """Return the tubes of the total and the static port as they are built, each with its direction."""
+
+        def built(tube: TubeSettings, usual: Vector) -> tuple[TubeSettings, Vector]:
+            tube = replace(tube, length=self.pipe) if self.pipe > 0.0 else tube
+            return tube, usual if tube.direction is None else tube.direction
+
+        return built(self.total_port.tube, AFT), built(self.static_port.tube, DOWN)
+
+    def normals(self) -> tuple[Vector, Vector]:
+        """Return the normals of the total and the static sensor's membranes, body axes, of any length."""
+        total, static = self.total.normal, self.static.normal
+        return FORWARD if total is None else total, DOWN if static is None else static

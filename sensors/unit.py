@@ -10,10 +10,14 @@ from typing import Annotated, Literal
 import numpy as np
 from annotated_types import Interval
 
+from sensors.rules import number
+
 Triple = tuple[float, float, float]
 Unit = Literal["random", "typical", "ideal"]
 DriftModel = Literal["gauss-markov", "flicker"]
 Factor = Annotated[float, Interval(ge=0.0, le=1000.0)]
+CLOCK = number(0.0, 50.0)  # %: the worst RC oscillators are off by 15 %, and at 100 % time would stand still
+CORRELATION = number(1e-3, 1e6)  # s: shorter is white noise, longer is an offset for the longest flight, an hour
 
 G0 = 9.80665  # standard gravity, m/s² (CGPM 1901)
 MOST_RATE_ERROR = 0.5  # –; whatever factor is put on an oscillator's error, a unit further off is not sold

@@ -1,12 +1,14 @@
 """What the estimator believes: the descriptions' own numbers, through [mismatch]; figures by hand."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
-from sensors import AirDataHead, Streams
+from sensors import AccelerometerKnowledge, AirDataHead, HeadKnowledge, Streams
+from sensors.knowledge import PressureKnowledge
+from uavsim import beliefs
 from uavsim.beliefs import believed_air, believed_noise, calibrated, turbulence
 from uavsim.cosim import draw
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
@@ -50,6 +52,7 @@ def test_vibration_and_drift_are_noise_of_their_density() -> None:
         ("drift", "walk"), ("lag", "total_window"), ("acceleration", "acceleration"),
         ("acceleration_sd", "acceleration_sd"), ("accelerometer_noise", "accelerometer_sd"),
         ("accelerometer_scale", "accelerometer_scale_sd"), ("accelerometer_lag", "accelerometer_lag"),
+        ("accelerometer_offset", "accelerometer_offset_sd"),
     ],
 )  # fmt: skip
 def test_each_mismatch_is_a_factor_on_its_own_belief(key: str, field: str) -> None:
@@ -57,8 +60,37 @@ def test_each_mismatch_is_a_factor_on_its_own_belief(key: str, field: str) -> No
     doubted = believed_noise(scenario("air_data.pipe=0.05", f"mismatch.{key}=2"))
     assert getattr(doubted, field) == pytest.approx(2.0 * getattr(plain, field))
     changed = {name for name in plain.__slots__ if getattr(doubted, name) != getattr(plain, name)}
-    together = {"lag": {"total_window", "static_window", "total_lag", "static_lag"}}
+    together = {
+        "lag": {"total_window", "static_window", "total_lag", "static_lag"},
+        "accelerometer_offset": {"accelerometer_offset_sd", "lift_offset_sd"},
+    }
     assert changed == together.get(key, {field})
+
+
+KNOWN = [("known_of_accelerometer", f"{field.name}") for field in fields(AccelerometerKnowledge)] + [
+    ("known_of_head", f"{path}{field.name}")
+    for path, kind in (("", HeadKnowledge), ("total.", PressureKnowledge), ("static.", PressureKnowledge))
+    for field in fields(kind)
+    if not path or field.name not in ("walk", "column")  # of the pair's difference, which the head has
+    if field.name not in ("total", "static")
+]
+
+
+@pytest.mark.parametrize(("of", "name"), KNOWN)
+def test_every_number_of_the_knowledge_is_believed(of: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twice a number of the knowledge, and the belief is another."""
+    flown = scenario("air_data.pipe=0.05", "air_data.acceleration_sensitivity=true", "air_data.static.normal=[1,0,1]")
+    plain, known = believed_noise(flown), getattr(beliefs, of)
+
+    def doubled(*settings: object) -> object:
+        found = known(*settings)
+        group, _, key = name.rpartition(".")
+        inner = getattr(found, group) if group else found
+        inner = replace(inner, **{key: 2.0 * getattr(inner, key)})
+        return replace(found, **{group: inner}) if group else inner
+
+    monkeypatch.setattr(beliefs, of, doubled)
+    assert believed_noise(flown) != plain
 
 
 def test_a_calibration_is_of_the_units_that_fly_with_its_error() -> None:

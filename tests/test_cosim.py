@@ -689,6 +689,36 @@ def test_vibration_is_that_of_the_phase() -> None:
             assert 0.6 < rms < 1.2 if phase == shaken else rms < 0.1
 
 
+def shaken(*overrides: str) -> tuple[Flight, np.ndarray, np.ndarray]:
+    """A flight without a sensor's errors, its sample times and what it felt along y beside the true force, g."""
+    ideal = ("noise_scale=0", "errors.bandwidth=false", 'unit="ideal"')
+    flight = uavsim.fly(short("vibration.ring_fraction=0", *(f"accelerometer.{key}" for key in ideal), *overrides))
+    t = column(flight, "accelerometer", "t")
+    true = np.interp(t, column(flight, "truth", "t"), column(flight, "truth", "fy"))
+    return flight, t, (column(flight, "accelerometer", "fy") - true) / STANDARD_GRAVITY
+
+
+def test_the_rails_vibration_ends_with_the_rail() -> None:
+    """1 g rms in the stroke alone: felt until the last shoe is off, and gone from the second step after it on."""
+    flight, t, felt = shaken("vibration.waiting_rms_g=0", "vibration.flight_rms_g=0", "vibration.stroke_rms_g=1")
+    end = flight.score["flight"]["rail_exit_time"]
+    assert felt[(t >= end - 0.05) & (t < end)].std() > 0.3
+    assert np.abs(felt[(t > end + 0.002) & (t < end + 0.04)]).max() < 1e-3
+
+
+def test_a_vibration_that_is_alike_in_all_phases_does_not_notice_the_rails_end() -> None:
+    """It goes on with the row of the next step: as in a launch that does not leave the rail, to a digit of the part."""
+    alike = [f"vibration.{phase}_rms_g=0.5" for phase in ("waiting", "stroke", "flight")]
+    flight, t, felt = shaken(*alike)
+    held, _, there = shaken(*alike, "launcher.peak_specific_force_g=0.1")
+    end = flight.score["flight"]["rail_exit_time"]
+    assert held.score["flight"]["rail_exit_time"] is None
+    after = (t > end - 0.1) & (t < end + 0.1)
+    assert felt[after].std() > 0.3
+    digit = Scenario().accelerometer.description().resolution / STANDARD_GRAVITY
+    assert np.abs(felt[: there.size] - there[: felt.size])[after].max() < 2.0 * digit
+
+
 @pytest.mark.parametrize("channel", ["total", "static"])
 def test_pressure_noise_scale_and_offset(channel: str) -> None:
     """Of this channel alone; the other's readings stay what they were."""

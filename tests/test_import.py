@@ -58,7 +58,8 @@ def test_onboard_loads_nothing_of_the_truth() -> None:
     modules = {name for name in run.stdout.split() if not name.startswith(inside)}
     assert modules == {
         "uavsim", "uavsim.airdata", "uavsim.onboard", "uavsim.onboard.launch", "uavsim.onboard.airspeed",
-        "uavsim.onboard.flight_computer", "uavsim.onboard.plausible", "uavsim.onboard.stamps",
+        "uavsim.onboard.flight_computer", "uavsim.onboard.interface", "uavsim.onboard.plausible",
+        "uavsim.onboard.stamps", "uavsim.failure", "uavsim.registry",
     }  # fmt: skip
 
 

@@ -362,10 +362,10 @@ def test_the_figure_marks_the_detections_and_keeps_the_peaks(read) -> None:
 @pytest.mark.parametrize(
     ("kind", "level"),
     [
-        ("adaptive-cusum", "reference 4.50 g"),
-        ("cusum", "reference 4.50 g"),
-        ("glr-bank", "reference"),
-        ("single-threshold", "threshold 4.60 g"),
+        ("adaptive-cusum", "c 4.50 g"),
+        ("cusum", "c 4.50 g"),
+        ("glr-bank", "c 4.50 g"),
+        ("single-threshold", "level 4.60 g"),
     ],
 )
 def test_any_kind_of_detector_runs_and_is_drawn_with_its_level(read, kind: str, level: str) -> None:

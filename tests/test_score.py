@@ -437,6 +437,22 @@ def test_pressure_error_is_without_its_mean_before_launch(
         assert figures["reduction_percent"] == pytest.approx(75.0, abs=0.3)
 
 
+@pytest.mark.parametrize("channel", ["total", "static"])
+def test_the_reading_of_a_row_is_that_of_its_own_instant(channel: str) -> None:
+    """On a pressure that rises by 1000 Pa/s from the launch on: the reading before would be 10 ms old, 10 Pa."""
+
+    def rising(truth: dict[str, np.ndarray]) -> None:
+        truth[f"p_{channel}"] += 1000.0 * np.maximum(truth["t"] - RELEASE, 0.0)
+
+    flight = made(change=rising)
+    assert score(flight)["pressure"][channel]["rmse_raw"] == pytest.approx(0.0, abs=1e-6)
+    rows = {name: np.asarray(flight.tables["estimate"][name]).copy() for name in ("t", "p_total", "p_static")}
+    late = {**rows, "t": rows["t"] + 0.004}  # the last reading of a row is now the one before it
+    found = score(made(change=rising, readings=late))["pressure"][channel]
+    assert found["rmse_raw"] == pytest.approx(10.0, rel=1e-3)
+    assert found["rmse"] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_nis_is_the_mean_over_scored_rows_with_a_new_conversion() -> None:
     flight = pressed("covered", tare_taken=50.0)
     time = flight.estimate("t")
@@ -527,7 +543,7 @@ def test_what_does_not_exist_is_null_and_not_zero() -> None:
         launch["true_time"], launch["detected_time"], launch["latency"], launch["latency_from_crossing"],
         flight["rail_exit_time"], flight["rail_exit_speed"], flight["rail_exit_altitude"], flight["cruise_airspeed"],
         flight["cruise_airspeed_sd"], flight["lowest_altitude_after_exit"],
-        *(airspeed[key] for key in airspeed if key not in ("samples", "stroke", "transition", "cruise")),
+        *(airspeed[key] for key in airspeed if key not in ("estimator", "samples", "stroke", "transition", "cruise")),
         *(airspeed[phase][key] for phase in ("stroke", "transition", "cruise") for key in airspeed[phase]
           if key != "samples"),
     ):  # fmt: skip

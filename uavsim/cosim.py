@@ -20,7 +20,7 @@ from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
 from uavsim.beliefs import believed_air, believed_noise, calibrated
-from uavsim.failure import PartError, built
+from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 STEP_RATE = 1.0 / PLANT_STEP  # Hz, 1000 exactly
-FAILED = "onboard_failed"
 CHUNK = 500  # steps between two looks at the progress
 DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recorded
 DETECTOR_TRAIL = 0.1  # s after recognition until which it is

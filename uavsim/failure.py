@@ -8,6 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+FAILED = "onboard_failed"
+"""Outcome of a flight that a part ended so."""
+
 
 class PartError(Exception):
     """A part has failed; one line: which, when and how."""

@@ -96,6 +96,8 @@ class MismatchSettings:
         Factor on the standard deviation of a reading of specific force, vibration included.
     accelerometer_scale : float
         Factor on the standard deviation of its scale error.
+    accelerometer_offset : float
+        Factor on the standard deviation of its offset.
     accelerometer_lag : float
         Factor on the age of a reading of specific force at its time stamp.
     gust : float
@@ -112,6 +114,7 @@ class MismatchSettings:
     acceleration_calibration: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.3
     accelerometer_noise: Belief = 1.0
     accelerometer_scale: Belief = 1.0
+    accelerometer_offset: Belief = 1.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     gust: Belief = 1.0
 

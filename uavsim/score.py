@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.consistency import LAGS, LEAST, ljung_box
+from uavsim.failure import FAILED
 from uavsim.files import without_none
 from uavsim.score_keys import PHASES, PRESSURE, PRESSURES
 from uavsim.truth import STANDARD_GRAVITY
@@ -210,7 +211,7 @@ def _score(flight: Judged) -> dict[str, Any]:
 def outcome(flight: Judged) -> str:
     """Name the first that applies, in the order of `docs/score.md`."""
     wings, exit_time, detected = flight.event_time("wings_commanded"), flight.rail_exit_time, flight.detected_time
-    if flight.ended in ("diverged", "onboard_failed"):
+    if flight.ended in ("diverged", FAILED):
         return flight.ended
     if flight.is_rig:
         return "completed"

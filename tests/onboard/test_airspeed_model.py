@@ -178,6 +178,49 @@ def test_updates_are_those_of_the_matrices():
         np.testing.assert_allclose(left, p - np.outer(gain, h @ p), rtol=1e-9, atol=1e-12)
 
 
+def test_bent_update_is_the_iterated_one_of_the_matrices():
+    """Near rest, all correlated, pushed: Gauss-Newton with matrices, four turns (Bell & Cathey 1993); 1e-9."""
+    f = arbitrary(5)
+    x, p = f.gaussian()
+    x[0] = 4.0
+    p[0] *= 3.0
+    p[:, 0] *= 3.0
+    f.put(x, p)
+    x, p = f.gaussian()
+    reading, variance, pushed = total_pressure(5.1, *x[[2, 4, 5]], pushed=37.0, heat=HEAT), 2.9, 37.0
+    at = x.copy()
+    for _ in range(4):
+        h = full(total_slopes(at[0], at[2], pushed=pushed, heat=HEAT))
+        spread = h @ p @ h + variance
+        innovation = reading - total_pressure(*at[[0, 2]], *x[[4, 5]], pushed=pushed, heat=HEAT)
+        innovation -= h[0] * (x[0] - at[0]) + h[2] * (x[2] - at[2])
+        left = p[0, 0] - (p @ h)[0] ** 2 / spread
+        bend = h[0] / at[0] * left
+        spread, innovation = spread + 0.5 * bend**2, innovation - 0.5 * bend
+        at = x + p @ h / spread * innovation
+    before = 7.0 * x[2] / HEAT * p[0, 0]
+    assert before**2 > 0.01 * variance  # it is bent
+    f.total(reading, variance, pushed, HEAT)
+    after, found = f.gaussian()
+    assert f.taken
+    np.testing.assert_allclose(after, at, rtol=1e-9)
+    np.testing.assert_allclose(found, p - np.outer(p @ h, h @ p) / spread, rtol=1e-7, atol=1e-10)
+
+
+def test_a_spike_near_rest_is_left_out():
+    """Beyond the gate nothing changes; told are the innovation with its second-order part, and NIS by both."""
+    f = MatrixFilter(**UNEQUAL)
+    bend = 7.0 * f.p / HEAT * f.vv
+    expected, spread = f.p + 0.5 * bend, f.pp + f.dd + 2.9 + 0.5 * bend**2
+    before = f.gaussian()
+    nis = f.total(expected + 200.0, 2.9, 0.0, HEAT)
+    assert bend**2 > 0.01 * 2.9
+    assert not f.taken
+    assert (f.innovation, nis) == pytest.approx((200.0, 200.0**2 / spread), rel=1e-9)
+    for one, other in zip(before, f.gaussian(), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
 def test_start_knows_the_sum_of_bias_and_slope():
     """At rest f_x reads b + s: its variance is rest_sd², that of b alone bias_sd²; both are not independent of s."""
     known = filled(

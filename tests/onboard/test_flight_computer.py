@@ -140,8 +140,11 @@ def test_the_detector_is_not_asked_while_there_is_a_launch_to_follow() -> None:
 
 
 def test_stroke_ends_when_the_mean_of_10_ms_was_below_1_g_for_20_ms() -> None:
-    """From 8 g at once to -1 m/s²: enough of the last ten readings must be new ones; 20 ms later it is over."""
-    crossed = next(n for n in range(11) if n * -1.0 + (10 - n) * 8.0 * G < 10 * G)
+    """From 8 g at once to -1 m/s²: enough of the last ten readings must be new ones; 20 ms later it is over.
+
+    The level is above what f_x was on the rail.
+    """
+    crossed = next(n for n in range(11) if n * -1.0 + (10 - n) * 8.0 * G < 10 * (G + REST))
     assert events(launched())["stroke_end"] == pytest.approx(2.4 + (crossed - 1) / RATE + 0.020, abs=1e-9)
 
 
@@ -151,8 +154,18 @@ def test_the_hold_and_the_level_are_settings(hold: float) -> None:
     never = computer(2.02, stroke_end_level_g=0.5)
     feed(never, REST, 0.0, 2.0)
     feed(never, 8.0 * G, 2.0, 2.4)
-    feed(never, 0.6 * G, 2.4, 4.0)
+    feed(never, REST + 0.6 * G, 2.4, 4.0)
     assert never.state == "stroke"
+
+
+@pytest.mark.parametrize("offset", [-20.0, 20.0])
+def test_an_offset_does_not_move_the_end_of_the_stroke(offset: float) -> None:
+    """±2 g of the accelerometer's own: the mean on the rail holds it."""
+    box = computer(2.02)
+    feed(box, REST + offset, 0.0, 2.0)
+    feed(box, 8.0 * G + offset, 2.0, 2.4)
+    feed(box, -1.0 + offset, 2.4, 4.0)
+    assert events(box)["stroke_end"] == events(launched())["stroke_end"]
 
 
 def test_a_dip_shorter_than_the_hold_does_not_end_the_stroke() -> None:
@@ -389,6 +402,37 @@ def test_while_the_airspeed_is_to_be_gained_the_pitch_is_the_launchs() -> None:
     box = flying()
     reading(box, 4.0, SETTINGS.airspeed - 2.0 * SETTINGS.speed_margin, height=0.0)
     assert box.commands[2] <= math.radians(SETTINGS.launch_pitch_deg) + 1e-12
+
+
+@pytest.mark.parametrize("level", [2.0, -1.5])
+def test_the_hold_is_about_the_pitch_of_level_cruise(level: float) -> None:
+    """pitch = level + K_h Δh between 2 level − climb and climb; throttle = level + K_c (pitch − level) + K_p e.
+
+    With a level pitch of 0, the default, a sign or a factor of it would go unseen.
+    """
+    box = flying(level_pitch_deg=level)
+    flat, climb = math.radians(level), math.radians(SETTINGS.climb_pitch_deg)
+    reading(box, 4.0, SETTINGS.airspeed)
+    assert box.commands[1:3] == (pytest.approx(SETTINGS.throttle_level, abs=2e-3), pytest.approx(flat, abs=1e-3))
+    for k, (height, pitch) in enumerate(((5000.0, 2.0 * flat - climb), (-500.0, climb))):
+        reading(box, 4.01 + 0.01 * k, SETTINGS.airspeed, height=height)
+        assert box.commands[2] == pytest.approx(pitch, abs=1e-9)
+        wanted = SETTINGS.throttle_level + SETTINGS.throttle_climb * (pitch - flat)
+        assert throttle(box) == pytest.approx(min(max(wanted, 0.0), 1.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("level", [2.0, -1.5])
+def test_what_is_safe_is_about_the_pitch_of_level_cruise(level: float) -> None:
+    """safe throttle + K_c (pitch − level pitch), and the pitch of level flight where the height is not known."""
+    box = flying(level_pitch_deg=level)
+    flat, climb = math.radians(level), math.radians(SETTINGS.climb_pitch_deg)
+    reading(box, 4.0, SETTINGS.airspeed)
+    lost(box, 4.01, 5.0, height=5000.0, valid=False)
+    assert box.commands[2] == pytest.approx(2.0 * flat - climb)
+    assert throttle(box) == pytest.approx(SETTINGS.safe_throttle + SETTINGS.throttle_climb * (flat - climb), abs=1e-9)
+    box._news = [(5.0, "airspeed_fault", "static", "frozen")]
+    reading(box, 5.0, 3.0, height=5000.0, valid=False)
+    assert box.commands[1:3] == (pytest.approx(SETTINGS.safe_throttle), pytest.approx(flat))
 
 
 def lost(box: FlightComputer, first: float, last: float, **bad: Any) -> None:

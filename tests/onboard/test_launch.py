@@ -355,7 +355,6 @@ def test_settings_validate_and_build():
         {"threshold": -1.0},
         {"axes": ["forward"]},
         {"axes": []},
-        {"kind": "x"},
     ):
         with pytest.raises(pydantic.ValidationError):
             adapter.validate_python(wrong)

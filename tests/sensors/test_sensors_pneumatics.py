@@ -295,6 +295,22 @@ def test_a_plug_of_water_slows_the_response():
     assert 0.5e3 / np.diff(crossings[:9]).mean() == pytest.approx(natural, rel=0.03)
 
 
+@pytest.mark.parametrize("length", [0.0, 0.4])
+def test_a_plug_of_water_rubs_by_poiseuille(length):
+    """Behind a ramp of 1000 Pa/s by a₁ 1000 Pa, a₁ of the tube and 128 μ_w l/(πd⁴) · (V + V_t/2)/(γp) of the plug."""
+    diameter, volume, plug = 0.5e-3, 1e-6, 0.02
+    tube = TubeSettings(length=length, diameter=diameter, volume=volume)
+    line = _line(tube, (PortFault("water", water_length=plug),))
+    end = 6.0
+    behind = 1e5 + 1e3 * end - _run(line, 6001, port=lambda t: 1e5 + 1e3 * t)[-1]
+    capacity = (volume + pi * diameter**2 * length / 8.0) / (1.4 * SEA_LEVEL["pressure"])
+    lag = 128.0 * 1.0e-3 * plug * capacity / (pi * diameter**4)
+    if length:
+        lag += second_order(length=length, diameter=diameter, volume=volume, **SEA_LEVEL)[0]
+    assert behind == pytest.approx(1e3 * lag, rel=1e-4)
+    assert behind > 80.0
+
+
 def test_water_comes_and_goes():
     line = _line(BARE, (PortFault("water", start=0.1, stop=0.2, water_length=0.01),))
     out = _run(line, 2000, force=(50.0, 0.0, 0.0))

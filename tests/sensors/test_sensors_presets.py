@@ -22,7 +22,7 @@ from sensors import (
     Streams,
     catalogue,
     datasheet_check,
-    head_noise,
+    known_of_head,
     preset,
 )
 from sensors.noise import enbw
@@ -867,10 +867,11 @@ def test_files_that_are_no_text_or_no_toml_are_one_line(tmp_path):
 def test_noise_scale_is_part_of_the_description():
     """An assumption about the part: three times the noise is nine times the filter's variance."""
     settings = AirDataSettings(total=PressureSettings(noise_scale=3.0), static=PressureSettings(iir=2))
-    total, static, temperature = head_noise(settings)
-    assert total == pytest.approx(3 * 3.7)
-    assert static == pytest.approx(3.7 * (1 / 3) ** 0.5)  # a/(2 - a) of the variance at a = 1/2
-    assert temperature == pytest.approx(0.005 * (1 / 3) ** 0.5)
+    head = known_of_head(settings)
+    assert head.total.noise_sd == pytest.approx(3 * 3.7)
+    assert head.static.noise_sd == pytest.approx(3.7 * (1 / 3) ** 0.5)  # a/(2 - a) of the variance at a = 1/2
+    offset = settings.static.description().temperature_offset_sd
+    assert head.temperature_sd**2 - offset**2 == pytest.approx(0.005**2 / 3, rel=1e-6)
 
 
 def test_settings_are_checked_against_their_bounds():

@@ -121,7 +121,7 @@ def test_the_first_alarm_of_each_record_is_that_of_step(kind: str) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(
-    kind=st.sampled_from(KINDS),
+    kind=st.sampled_from(list(KINDS)),
     rate=st.floats(40.0, 5000.0),
     seed=st.integers(0, 2**32),
     threshold=st.floats(5.0, 60.0),

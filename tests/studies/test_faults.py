@@ -9,10 +9,12 @@ from uavsim.studies.faults import CASES, FaultFlight, campaign, fly_case, summar
 
 SEEN = FaultFlight(
     seed=1, fault=10.0, flagged=10.5, recovered=nan, channel="total", kind="frozen", false=0, off=nan, climb=2.4,
-    outcome="cruise", coverage=0.9, valid=8.0, error=1.5,
+    outcome="cruise", coverage=0.9, valid=8.0, error=1.5, told_coverage=0.8, told_error=1.7,
 )  # fmt: skip
-MISSED = replace(SEEN, seed=2, flagged=nan, channel="", kind="", off=12.0, coverage=nan, error=nan)
-LATE = replace(SEEN, seed=3, flagged=15.0, off=12.5, coverage=1.0, error=3.0)
+MISSED = replace(
+    SEEN, seed=2, flagged=nan, channel="", kind="", off=12.0, coverage=nan, error=nan, told_coverage=nan, told_error=nan
+)
+LATE = replace(SEEN, seed=3, flagged=15.0, off=12.5, coverage=1.0, error=3.0, told_error=3.5)
 WRONG = replace(SEEN, seed=4, channel="static", false=1, outcome="crashed", recovered=11.5)
 
 
@@ -27,6 +29,7 @@ def test_a_campaign_is_counted() -> None:
     assert (s.blamed, s.false, s.crashed, s.recovered) == (2, 1, 1, 1)
     assert s.delays == (5.0, inf, inf)
     assert (s.coverage, s.error) == (pytest.approx((0.9 + 1.0 + 0.9) / 3), 3.0)
+    assert (s.told_coverage, s.told_error) == (pytest.approx(0.8), 3.5)
     low, high = s.interval(s.within)
     assert 0.0 < low < 0.5 < high < 1.0
 
@@ -36,6 +39,22 @@ def test_flights_that_are_never_valid_have_no_coverage() -> None:
     s = summarise("static-climb", [replace(SEEN, coverage=nan, error=nan)] * 2)
     assert s.coverage != s.coverage
     assert s.error != s.error
+    assert (s.told_coverage, s.told_error) == (0.8, 1.7)
+
+
+@pytest.mark.parametrize("seed", [2, 8])
+def test_what_is_told_without_a_static_port_is_scored_though_it_is_not_valid(seed: int) -> None:
+    """A static port that shuts in a climb, flown 4 s on: below 0.8 m/s off and in 4 of 5 rows within the bar.
+
+    Nothing is valid after the flag, so that the figures of valid estimates say nothing of it.
+    """
+    case = replace(CASES["static-climb"], overrides=("duration=12", *CASES["static-climb"].overrides[1:]))
+    found = fly_case(replace(case, window=(6.5, 7.5)), seed)
+    assert (found.channel, found.kind) == ("static", "frozen")
+    assert found.valid == 0.0
+    assert found.error != found.error
+    assert found.told_error < 0.8
+    assert found.told_coverage > 0.8
 
 
 def test_a_fault_that_is_flown_is_seen() -> None:

@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim import __version__
+from uavsim.failure import FAILED, PartError
+from uavsim.files import without_none
 from uavsim.flight import Flight, frame
 from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
 from uavsim.onboard.launch.guarded import STATE
+from uavsim.plugins import plugged_in
 from uavsim.score_keys import AIRSPEED, FLIGHT, PHASES, PRESSURE, PRESSURES
 
 LOT = 50_000  # readings that are plain numbers at once
@@ -42,11 +45,11 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
     """
     rate = recording.rate
     detector = launch.default(rate=rate) if settings is None else launch.build(settings, rate)
-    columns, detections = _watch(detector, recording.readings)
+    columns, detections, reason = _watch(detector, recording.readings)
     t, fx, fy, fz = recording.readings.T
     tables = {
         "accelerometer": frame("accelerometer", {"t": t, "fx": fx, "fy": fy, "fz": fz}),
-        "detector": frame("detector", {"t": t, **columns}),
+        "detector": frame("detector", {"t": t[: columns["recognised"].size], **columns}),
     }
     events = [{"t": when, "event": "launch_detected"} for when in detections]
     used = launch.DetectorSettings() if settings is None else settings
@@ -55,30 +58,34 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
         "recording": {"files": list(recording.files), "map": recording.mapping, "rate": rate},
         "detector": asdict(used),
     }
-    return Flight(about, tables, events, _score(recording, used.kind, detections))
+    score = _score(recording, used.kind, detections)
+    if reason:
+        score |= {"outcome": FAILED, "reason": reason}
+    return Flight(about, tables, events, score)
 
 
-def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], list[float]]:
-    """Return the detector's state at each reading, and when it recognised a launch."""
+def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], list[float], str]:
+    """Return the detector's state at each reading, when it recognised a launch, and what ended it before the end."""
     state = {name: array("d") for name in STATE}
-    recognised = array("b")
-    detections: list[float] = []
+    recognised, detections, reason = array("b"), [], ""
     resume = np.inf
-    step = detector.step
-    for t, fx, fy, fz in _rows(readings):
-        if t >= resume:
-            detector.reset()
-            resume = np.inf
-        seen = step(t, fx, fy, fz)
-        if seen:
-            detections.append(t)
-            resume = t + PAUSE
-        for name, values in state.items():
-            value = getattr(detector, name, None)
-            values.append(np.nan if value is None else value)
-        recognised.append(seen)
+    try:
+        for t, fx, fy, fz in _rows(readings):
+            if t >= resume:
+                detector.reset()
+                resume = np.inf
+            seen = detector.step(t, fx, fy, fz)
+            told = [getattr(detector, name, None) for name in STATE]
+            if seen:
+                detections.append(t)
+                resume = t + PAUSE
+            for name, value in zip(STATE, told, strict=True):
+                state[name].append(np.nan if value is None else value)
+            recognised.append(seen)
+    except PartError as failure:
+        reason = str(failure)
     columns = {name: _column(np.array(state[name]), of_flags=name == "triggered") for name in STATE}
-    return {**columns, "recognised": np.array(recognised, dtype=bool)}, detections
+    return {**columns, "recognised": np.array(recognised, dtype=bool)}, detections, reason
 
 
 def _column(values: Array, *, of_flags: bool) -> NDArray[Any]:
@@ -103,6 +110,7 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
         "outcome": None,
         "expected": None,
         "seed": None,
+        "plugins": [without_none(asdict(source)) for source in plugged_in({"detector": kind})],
         "versions": {"uavsim": __version__, "numpy": version("numpy")},
         "launch": {
             "release_time": None,
@@ -115,7 +123,7 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
             "false_detections": None,
             "detector": kind,
         },
-        "airspeed": {**nothing, **{phase: dict(nothing) for phase in PHASES}},
+        "airspeed": {"estimator": None, **nothing, **{phase: dict(nothing) for phase in PHASES}},
         "pressure": {name: dict.fromkeys(PRESSURE) for name in PRESSURES},
         "flight": {**dict.fromkeys(FLIGHT), "duration": end - start},
         "requirements": [],

@@ -7,8 +7,9 @@ head, and turns detection into action:
                                     |                                                              motor on, airspeed
                                     +--push over, no speed gained--> rearming --delay--> waiting   and height hold
 
-The end of the stroke is a short mean of f_x that stays below a level. Whether it was a launch tells the speed gained,
-the integral of f_x less its mean on the rail since detection: a knock must not open the wings.
+The end of the stroke is a short mean of f_x less its mean on the rail that stays below a level. Whether it was a launch
+tells the speed gained, the integral of the same since detection: a knock must not open the wings. The mean on the rail
+holds the accelerometer's offset, so no offset keeps the wings in.
 
 In flight the throttle holds the ESTIMATED airspeed and the pitch command the height by static pressure; pitch and roll
 themselves are stabilised inside the aircraft:
@@ -56,7 +57,7 @@ class FlightComputerSettings:
     airspeed
         To hold, m/s.
     stroke_end_level_g
-        The stroke is over when a short mean of f_x has stayed below this level, g, ...
+        The stroke is over when a short mean of f_x less its mean on the rail has stayed below this level, g, ...
     stroke_end_mean
         ... taken over this time, s, ...
     stroke_end_hold
@@ -273,10 +274,11 @@ class FlightComputer:
     def _follow_stroke(self, t: float, fx: float) -> None:
         if not -MOST_FORCE < fx < MOST_FORCE:
             return
-        self._speed_gain += (fx - self._rail_mean) * min(t - self._last, LONGEST_STEP)
+        above = fx - self._rail_mean
+        self._speed_gain += above * min(t - self._last, LONGEST_STEP)
         self._last = t
         recent = self._recent
-        recent.append(fx)
+        recent.append(above)
         if len(recent) < (recent.maxlen or 1) or sum(recent) >= self._level * len(recent):
             self._quiet_since = None
         elif self._quiet_since is None:

@@ -36,6 +36,7 @@ from uavsim.onboard.airspeed.energy_model import (
     transition,
 )
 from uavsim.onboard.airspeed.gust import gust_density
+from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
@@ -194,7 +195,8 @@ class AirspeedBound:
     def __init__(
         self, courses: Courses, schedule: Schedule, settings: EstimatorSettings, noise: NoiseModel, start: Start
     ) -> None:
-        self._courses, self._schedule, self._noise, self._aided = courses, schedule, noise, settings.aided
+        self._courses, self._schedule, self._noise = courses, schedule, noise
+        self._aided = with_offset(settings.aided, noise.accelerometer_offset_sd)
         self._gas = GAS_CONSTANT_DRY_AIR * courses.temperature
         self._share = 0.5 * noise.temperature_sd / courses.temperature
         initial = covariance_at_rest(

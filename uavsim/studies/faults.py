@@ -7,6 +7,8 @@ Each case is a packaged scenario, its overrides and a fault whose beginning is d
     false      flags before the fault, or in a flight without one
     unseen     from the instant at which the airspeed that is told is 2 m/s off to the flag, s; 0 if flagged before
     coverage   share of valid estimates after the flag whose true error is within 1.96 of their standard deviations
+    told       the same of all estimates after the flag, valid or not: without a static port none is valid, and what is
+               told then still has to be right
 
 Shares have Clopper-Pearson intervals.
 """
@@ -115,6 +117,8 @@ class FaultFlight:
     coverage, valid, error : float
         After the flag: share of valid estimates within 1.96 standard deviations; how long they were valid, s; the
         greatest error of a valid one, m/s.
+    told_coverage, told_error : float
+        The same share and error of all estimates after the flag, whatever `valid` says.
     """
 
     seed: int
@@ -130,6 +134,8 @@ class FaultFlight:
     coverage: float
     valid: float
     error: float
+    told_coverage: float = nan
+    told_error: float = nan
 
     @property
     def delay(self) -> float:
@@ -173,7 +179,9 @@ def _judge(case: Case, seed: int, fault: float, flown: Cosimulation) -> FaultFli
     t, speed, sd, valid = (flight.estimate[c].to_numpy() for c in ("t", "airspeed", "airspeed_sd", "valid"))
     error = speed - np.interp(t, truth["t"].to_numpy(), truth["airspeed"].to_numpy())
     off = t[(t >= effect) & (np.abs(error) > OFF) & ~(t >= first["t"])]
-    told = (t > first["t"]) & valid.astype(bool)  # of that reading itself it was told before the port was judged
+    told = t > first["t"]  # of that reading itself it was told before the port was judged
+    trusted = told & valid.astype(bool)
+    covered, size = np.abs(error) < 1.96 * sd, np.abs(error)
     span = truth[(truth["t"] >= fault) & (truth["t"] < fault + WITHIN)]
     return FaultFlight(
         seed=seed,
@@ -186,9 +194,11 @@ def _judge(case: Case, seed: int, fault: float, flown: Cosimulation) -> FaultFli
         off=float(off[0]) if off.size else nan,
         climb=float(-span["vd"].mean()) if len(span) else nan,
         outcome=flight.score["outcome"],
-        coverage=float(np.mean(np.abs(error[told]) < 1.96 * sd[told])) if told.any() else nan,
-        valid=float(told.sum() * np.median(np.diff(t))),
-        error=float(np.abs(error[told]).max()) if told.any() else nan,
+        coverage=float(np.mean(covered[trusted])) if trusted.any() else nan,
+        valid=float(trusted.sum() * np.median(np.diff(t))),
+        error=float(size[trusted].max()) if trusted.any() else nan,
+        told_coverage=float(np.mean(covered[told])) if told.any() else nan,
+        told_error=float(size[told].max()) if told.any() else nan,
     )
 
 
@@ -248,6 +258,8 @@ class Summary:
         Median, 99th percentile and greatest delay, s.
     coverage, error, valid : float
         Mean of the flights' coverage, greatest error of a valid estimate after a flag, m/s, median time valid, s.
+    told_coverage, told_error : float
+        The same mean and greatest error of all estimates after a flag, valid or not.
     """
 
     flights: int
@@ -262,6 +274,8 @@ class Summary:
     coverage: float
     error: float
     valid: float
+    told_coverage: float
+    told_error: float
 
     def interval(self, count: int) -> tuple[float, float]:
         """Clopper-Pearson 95 % interval of a count's share."""
@@ -291,4 +305,6 @@ def summarise(name: str, flown: list[FaultFlight]) -> Summary:
         coverage=float(np.mean([f.coverage for f in told])) if told else nan,
         error=float(np.max([f.error for f in told])) if told else nan,
         valid=float(np.median([f.valid for f in flagged])) if flagged else nan,
+        told_coverage=float(np.mean([f.told_coverage for f in flagged])) if flagged else nan,
+        told_error=float(np.max([f.told_error for f in flagged])) if flagged else nan,
     )

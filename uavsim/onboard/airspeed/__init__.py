@@ -1,8 +1,9 @@
 """Airspeed estimators: of two pressures, a temperature and, the best of them, the specific force they make an airspeed.
 
 With it they say how well it is known and whether it is to be trusted. `paper` is the published method,
-`constant_velocity` and `jump_adaptive` are other filters of the pressures alone, `aided` takes in the accelerometer by
-the filter in `energy`; what may be believed of the sensors is in `interface`, what a scenario can choose in `settings`.
+`constant_velocity` and `jump_adaptive` are other filters of the pressures alone. `aided` takes in the accelerometer:
+its model is `energy_model`, its filter `energy`, and `ports` watches the two ports. What may be believed of the sensors
+is in `interface`, what a scenario can choose in `settings`.
 
 To add one, write a file here that registers it (`kinds`); it is found by being here.
 """

@@ -28,6 +28,7 @@ soon as the clocks of head and accelerometer agree.
 """
 
 from collections import deque
+from dataclasses import replace
 from math import inf, nan, sqrt
 
 from uavsim import airdata
@@ -38,6 +39,7 @@ from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.membrane_push import MembranePush
+from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.onset import ONE_SIDED, Onset
 from uavsim.onboard.airspeed.ports import PERSISTENT, Ports
 from uavsim.onboard.airspeed.rest_force import RestForce
@@ -58,42 +60,48 @@ from uavsim.onboard.plausible import (
 )
 from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
-# Memory
+# -- the hand-over -----------------------------------------------------------------------------------------------------
+
 ROWS = 256  # readings of the head that are kept: those of 0.3 s at up to 850 Hz
+# s after the recognition in which a push has to show, three strokes of the catapult; after that V is what the pressures
+# say. By hand
+PATIENCE = 1.0
+# Pa, standard deviation of the static pressure at the start, where none has been read (3 km of height) and where one
+# has. By hand: so wide that the first readings in the filter decide
+ANYWHERE, AROUND = 3e4, 1e3
 
-# The hand-over
-PATIENCE = 1.0  # s after the recognition in which a push has to show; after that V is what the pressures say. By hand:
-# three strokes of the catapult
-ANYWHERE, AROUND = (
-    3e4,
-    1e3,
-)  # Pa, standard deviation of the static pressure at the start, where none has been read (3 km
-# of height) and where one has. By hand: so wide that the first readings in the filter decide
+# -- steady flight -----------------------------------------------------------------------------------------------------
 
-# Steady flight
-STEADY = 2.0  # s after the recognition, from which on the ports are watched and k is taken for known. Before, stroke,
-# unfolding and pull-up would seem faults. By hand, behind all three; docs/faults.md holds the check of false flags
+# s after the recognition, from which on the ports are watched and k is taken for known. Before, stroke, unfolding and
+# pull-up would seem faults. By hand, behind all three; docs/faults.md holds the check, the healthy flights
+STEADY = 2.0
 
-# Which readings are taken. All by hand; docs/airspeed.md, "What no reading can do", holds the check
-SUDDEN, SUDDEN_SD = 100.0, 15.0  # Pa, and standard deviations of a reading: the greater is how far a pressure may go at
-# once. Beyond it and what follows a reading is a spike and left out (`spikes`)
-STEEP, STROKE = 3e3, 5e4  # Pa/s that are granted beside it: ρ V V̇ at 60 m/s and 40 m/s², or a dive at 250 m/s; in the
-# stroke ρ V V̇ at 80 m/s and 500 m/s²
+# -- which readings are taken; by hand, and docs/airspeed.md, "What no reading can do", holds the check ----------------
+
+# Pa, and standard deviations of a reading: the greater is how far a pressure may go at once. Beyond it, and the next, a
+# reading is a spike and left out (`spikes`)
+SUDDEN, SUDDEN_SD = 100.0, 15.0
+# Pa/s that are granted beside: ρ V V̇ at 60 m/s and 40 m/s², or a dive at 250 m/s; in the stroke ρ V V̇ at 80 m/s and
+# 500 m/s²
+STEEP, STROKE = 3e3, 5e4
+# standard deviations of the accelerometer's offset, by which a reading of a plausible force may be beyond its bound.
+# Beyond it a reading is a missing one. By hand: the usual three
+FARTHEST = 3.0
 OLDEST = 0.05  # s by which a reading may be behind the filter; an older one is not taken
-ALONE = (
-    0.02  # s, two periods of a head at 100 Hz. Where a static pressure is so far ahead of the filter, total pressures
-)
-# have ceased to come, and the filter goes on without them
+# s, two periods of a head at 100 Hz. Where a static pressure is so far ahead of the filter, total pressures have ceased
+# to come, and the filter goes on without them
+ALONE = 0.02
 
-# What is claimed
+# -- what is claimed ---------------------------------------------------------------------------------------------------
+
 VALID = 8.0  # σ_V from which on an airspeed is valid: 2 V* of the pressures' law (`paper`)
-COASTED = (
-    2.0  # m/s, σ_V up to which an airspeed without its total port is valid; beyond it the airspeed hold falls back
-)
-# to a safe throttle. By hand; docs/faults.md says how long that lasts
+# m/s, σ_V up to which an airspeed without its total port is valid; beyond it the airspeed hold falls back to a safe
+# throttle. By hand; docs/faults.md says how long that lasts
+COASTED = 2.0
 MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
 
-# When the filter has diverged
+# -- when the filter has diverged --------------------------------------------------------------------------------------
+
 BEYOND = 450.0  # m/s of V, far past Mach 1, where the relation of pressures and airspeed ends
 THINNEST, THICKEST = 1e3, 2e5  # Pa of the static pressure: that at 31 km, and twice that at the sea
 
@@ -135,12 +143,14 @@ class AidedFilter(Estimator):
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
+        settings = replace(settings, aided=with_offset(settings.aided, noise.accelerometer_offset_sd))
         aided = settings.aided
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
         self._flight_force = MOST_FLIGHT_FORCE if aided.flight_force is None else aided.flight_force
+        self._flight_force += FARTHEST * noise.accelerometer_offset_sd
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._push, self._force = MembranePush(noise, self._gained, self._rest), 0.0
         self._rows: deque[Row] = deque(maxlen=ROWS)
@@ -161,7 +171,7 @@ class AidedFilter(Estimator):
         self._air = Air(aided, self._waiting.scale)
         self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
-        self.ports = Ports(aided, self._air, self._total_variance, self._static_variance, noise.walk)
+        self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news  # type: ignore[misc]  # its own list in place of none
         self.flying = self._apart = self._either = False
         self._steps, self._read = 0, -inf

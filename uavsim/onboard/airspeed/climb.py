@@ -1,24 +1,28 @@
 """Whether a static pressure stands still although the aircraft climbs or sinks: two models of the same readings.
 
-HEALTHY. The climb c changes by what the accelerometer feels across the wings, wings level or nearly so,
+**Healthy.** The climb c changes by what the accelerometer feels across the wings, wings level or nearly so,
 
     ċ = −(f_z + g) − a + noise,        ṗ = −ρ g c
 
-with a for its bias and the attitude. It is measured by the static pressure itself, so that a port which is shut in a
-climb tells of a pull that f_z has not felt. FROZEN. The pressure in the tube is a constant. As in `frozen`,
+with a for the accelerometer's bias and for the attitude. The climb is measured by the static pressure itself. So a port
+that shuts in a climb tells of a pull, from the climb to none, which f_z has not felt.
+
+**Frozen.** The pressure in the tube is a constant. As in `frozen`, the evidence for this model is
 
     W = max(0, W + ½ (ν²/S − e²/S) − δ)
 
-with ν and e what the two models are off by and S the healthy one's variance for both: air that is still, and a flight
-that is level, are no evidence.
+with ν and e what the two models are off by, and S the healthy one's variance for both. So still air and level flight
+are no evidence.
 """
 
+from uavsim.onboard.airspeed.air import GRAVITY
 from uavsim.onboard.airspeed.frozen import LEAST, MOST, SURPRISE
 
-GRAVITY = 9.80665  # m/s², ISO 80000-3
-CLIMB_SD, CLIMB_RATE = 3.0, 0.2  # m/s, (m/s)/√s: climb at the start; what roll and pitch turn away from f_z
-BIAS_SD, BIAS_RATE = 0.5, 0.05  # m/s², (m/s²)/√s
-DOUBT = 0.03  # nats that a reading takes off
+# m/s and (m/s)/√s: the climb at the start, and what roll and pitch turn away from f_z. By hand: with a smaller rate a
+# turn would look like a shut port, with a greater one a shut port like a turn
+CLIMB_SD, CLIMB_RATE = 3.0, 0.2
+BIAS_SD, BIAS_RATE = 0.5, 0.05  # m/s² and (m/s²)/√s of a. By hand, as the rate above
+DOUBT = 0.03  # nats that a reading takes off, so that chance does not add up. By hand; docs/faults.md holds the check
 
 
 class ClimbTest:
@@ -30,6 +34,8 @@ class ClimbTest:
         Of a reading's noise, Pa².
     static : float
         Static pressure at the start, Pa.
+    offset_sd : float
+        Offset of f_z, m/s².
 
     Attributes
     ----------
@@ -38,7 +44,7 @@ class ClimbTest:
     held, held_variance : float
         The constant that the frozen model believes in, Pa and Pa².
     since, climb_then : float
-        How long ago the healthy model was last the better one, s, and the climb by it then, m/s.
+        How long ago the healthy model was the better one, s, and its climb then, m/s.
     p, c, a : float
         State of the healthy model: Pa, m/s, m/s².
     """
@@ -48,12 +54,12 @@ class ClimbTest:
         "held_variance", "p", "since",
     )  # fmt: skip
 
-    def __init__(self, variance: float, static: float) -> None:
+    def __init__(self, variance: float, static: float, offset_sd: float = 0.0) -> None:
         self._noise = variance
         self.p = self.held = static
         self.c = self.a = self.evidence = self.since = self.climb_then = 0.0
         self._pp = self.held_variance = 1e6
-        self._cc, self._aa = CLIMB_SD * CLIMB_SD, BIAS_SD * BIAS_SD
+        self._cc, self._aa = CLIMB_SD * CLIMB_SD, BIAS_SD * BIAS_SD + offset_sd * offset_sd
         self._pc = self._pa = self._ca = 0.0
 
     def add(self, reading: float, dt: float, lift: float, weight: float) -> float:

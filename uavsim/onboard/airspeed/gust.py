@@ -5,8 +5,8 @@ walk of density 2 σ² V/L. At low altitude (MIL-F-8785C, h in feet)
 
     σ_u = σ_w/(0.177 + 0.000823 h)^0.4,    L_u = h/(0.177 + 0.000823 h)^1.2,    2 σ_u²/L_u ∝ (0.177 + 0.000823 h)^0.4/h
 
-which from 1000 down to 10 ft, where the law ends, is 1/h but for a factor that falls from 1.0 to 0.5. So σ and L are
-believed at one height, and the density at others is taken as 1/h of that.
+From 1000 ft down to 10 ft, where the law ends, this is 1/h times a factor that falls from 1.0 to 0.5. So the filter
+believes σ and L at one height, and takes the density to go as 1/h.
 """
 
 from uavsim.onboard.airspeed.settings import AidedSettings

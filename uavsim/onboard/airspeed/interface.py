@@ -39,6 +39,10 @@ class NoiseModel:
         White noise of one reading of f_x, vibration included, m/s².
     accelerometer_scale_sd : float
         Scale error of the accelerometer.
+    accelerometer_offset_sd : float
+        Offset of f_x, constant in a flight, m/s².
+    lift_offset_sd : float
+        The same of f_z, m/s².
     accelerometer_rate : float
         Its output rate, Hz.
     accelerometer_lag : float
@@ -61,6 +65,8 @@ class NoiseModel:
     walk: Annotated[float, Interval(ge=0.0, le=100.0)] = 0.007
     accelerometer_sd: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
     accelerometer_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.005
+    accelerometer_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    lift_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
     accelerometer_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 1000.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     head_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 100.0

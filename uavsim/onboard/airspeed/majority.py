@@ -1,16 +1,18 @@
-"""Mean of a pressure difference that is a constant in noise, whatever a broken sensor says for a while.
+"""Mean of a pressure difference that is a constant in noise, by the majority of its readings.
 
-A mean over what is right and what is not would be off for the whole flight. So readings that are further than `STRAY`
-from the mean so far make a mean of their own, beside the first, and that of more readings counts.
+A sensor may be broken for a while. A mean over right and wrong readings would then be off for the whole flight. So
+readings that are further than `STRAY` from the mean so far make a second mean. The mean of more readings counts.
 """
 
 from math import sqrt
 
-STRAY, STRAY_SD = 300.0, 20.0  # Pa, and standard deviations of a difference beside: no noise, and no drift in seconds
+# Pa, and standard deviations of a difference added to it: further than that from the mean is neither noise nor some
+# seconds of drift. By hand; test_nothing_raises holds the check
+STRAY, STRAY_SD = 300.0, 20.0
 
 
 class Group:
-    """Readings of about the same difference: their number and sum, Pa, and how many conversions of either pressure."""
+    """Readings of about the same difference: their number, their sum, Pa, and the new conversions of each."""
 
     __slots__ = ("count", "new_static", "new_total", "sum")
 
@@ -19,7 +21,7 @@ class Group:
         self.count = self.new_total = self.new_static = 0
 
     def holds(self, difference: float, stray: float) -> bool:
-        """Whether a difference belongs here, as any does while there is none."""
+        """Whether a difference belongs here; the first always does."""
         return not self.count or abs(difference - self.sum / self.count) <= stray
 
 

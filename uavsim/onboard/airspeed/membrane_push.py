@@ -1,8 +1,8 @@
-"""What pushes the membranes: the mean specific force above that at rest over a total pressure's conversion, m/s².
+"""What pushes the membranes of the pressure sensors: the specific force above that at rest, m/s².
 
-In flight it is that since the last reading: it changes too slowly for the difference to count. Held, and averaged,
-while it does not change by more than its noise: a slope that is noise would make the filter believe that it learns from
-it what the membranes make of a push.
+It is the mean over a total pressure's conversion. In flight the force changes so slowly that the mean since the last
+reading serves. The answer is held and averaged while it changes by no more than its noise. Else the filter would take
+that noise for a push, and believe that it learns from it what a push does to the membranes.
 """
 
 from math import sqrt
@@ -11,8 +11,12 @@ from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 
-SAME = 4.0  # standard deviations of a mean specific force, within which it is the one before
-GENTLE = 10.0  # m/s², the specific force less that at rest is less in flight
+# standard deviations of a mean force within which it is taken for the one before: some 1 in 16 000 of the same are
+# beyond. By hand
+SAME = 4.0
+# m/s². In flight the force less that at rest is below it, and the mean since the last reading serves. Above it, in the
+# stroke, the mean over the conversion itself is taken. By hand
+GENTLE = 10.0
 
 
 class MembranePush:

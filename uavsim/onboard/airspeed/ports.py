@@ -16,13 +16,15 @@ from collections.abc import Iterable
 
 from uavsim.onboard.airspeed.air import GRAVITY, SLOWEST, Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
+from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.readmission import longest_row
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
 
 MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go, so that memory is constant
-PERSISTENT = 5  # static pressures in a row beyond the gate: no longer spikes, but a port or a filter that is wrong. By
-# hand, as `stamps.AGREED`; docs/airspeed.md, "What no reading can do", holds the check
+# static pressures in a row beyond the gate: no longer spikes, but a port or a filter that is wrong. By hand, as
+# `stamps.AGREED`; docs/airspeed.md, "What no reading can do", holds the check
+PERSISTENT = 5
 
 News = tuple[float, str, str, str]
 """Time, s, event, channel and kind."""
@@ -37,10 +39,10 @@ class Ports:
         What is believed of the air.
     air : Air
         Of the filter; it changes as the flight goes on.
+    noise : NoiseModel
+        What is believed of the sensors.
     total_variance, static_variance : float
         Of a reading's noise, Pa².
-    walk : float
-        Random walk of the pair's difference, Pa/√s.
 
     Attributes
     ----------
@@ -59,14 +61,14 @@ class Ports:
     """
 
     __slots__ = (
-        "_aided", "_air", "_lift", "_static_variance", "_total_variance", "_usual", "_walk", "misses", "news",
+        "_aided", "_air", "_lift", "_noise", "_static_variance", "_total_variance", "_usual", "misses", "news",
         "seen_static", "seen_total", "static", "torn", "total",
     )  # fmt: skip
 
     def __init__(
-        self, aided: AidedSettings, air: Air, total_variance: float, static_variance: float, walk: float
+        self, aided: AidedSettings, air: Air, noise: NoiseModel, total_variance: float, static_variance: float
     ) -> None:
-        self._aided, self._air, self._walk = aided, air, walk
+        self._aided, self._air, self._noise = aided, air, noise
         self._total_variance, self._static_variance = total_variance, static_variance
         self._usual = [0, 0]
         self.news: list[News] = []
@@ -83,8 +85,11 @@ class Ports:
         rows = list(rows)
         if rows:
             self._usual = [longest_row(row[i] for row in rows) for i in (1, 2)]
-        self.total = TotalWatch(self._aided, self._total_variance, self._walk, self._usual[0])
-        self.static = StaticWatch(self._static_variance, self._walk, self._usual[1])
+        usual, noise = self._usual, self._noise
+        white = noise.accelerometer_sd**2 / noise.accelerometer_rate
+        offset, lift_offset = noise.accelerometer_offset_sd, noise.lift_offset_sd
+        self.total = TotalWatch(self._aided, self._total_variance, noise.walk, usual[0], offset, white)
+        self.static = StaticWatch(self._static_variance, noise.walk, usual[1], lift_offset)
         self._lift, self.misses, self.torn = GRAVITY, 0, False
         self.forget_seen()
 

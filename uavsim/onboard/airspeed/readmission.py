@@ -1,22 +1,30 @@
 """When a port that was flagged is believed again: it lives, and it agrees.
 
-It lives when its readings leave the pressure that it was shut in with, faster than the sensor's own error wanders: a
-port that is still shut would agree with a coasting filter whose error bar has grown wide enough. It agrees when for a
-second its readings fit the filter that coasts. That second doubles whenever a flag comes back within ten.
+It lives when its readings leave the pressure that it was shut in with, faster than the sensor's own error wanders. That
+is asked because the error bar of a coasting filter grows: at last a port that is still shut would agree with it.
+
+It agrees when its readings fit the coasting filter for a second. That second doubles whenever a flag comes back within
+ten.
 """
 
 from collections.abc import Iterable
 from math import inf, nan
 
-WANDER = 4.0  # of the sensor's walk, in variance, that a pressure which is shut in is granted
-CLIP = 9.0  # squared standard deviations
-ALIVE, STIRRED = 2.0, 25.0  # squared standard deviations a reading that noise is granted, and their sum beyond it
-AGREE = 9.0  # squared standard deviations within which a port agrees with the coasting filter
-SAME, TIMES = 25, 4  # readings of one value; noise at half a step's standard deviation repeats one time in three; and
-# so many times the longest row on the rail, where a sensor of coarser steps has shown what it does
-FEW = 5  # of so many parts of that row the first is a beginning
-RETURN, SOON = 1.0, 10.0  # s: how long it must; how soon after a return a flag doubles that
-LONGEST = 60.0  # s
+WANDER = 4.0  # times the sensor's walk, in variance, that a pressure which is shut in may wander. By hand
+# squared standard deviations at which a reading's part is clipped: one spike does not show that a port lives
+CLIP = 9.0
+# squared standard deviations a reading that noise is granted, where its mean is 1, and their sum beyond that, above
+# which the port lives. By hand; test_a_port_that_is_still_shut_is_not_taken_back
+ALIVE, STIRRED = 2.0, 25.0
+AGREE = 9.0  # squared standard deviations within which a port agrees with the coasting filter: three of them, by hand
+# readings of one value, or so many times the longest row on the rail, from which on a sensor is stuck. Noise of half a
+# step repeats one reading in three, and 25 in a row once in 10¹². A sensor of coarser steps has shown on the rail what
+# it does. By hand
+SAME, TIMES = 25, 4
+FEW = 5  # parts of that row. After the first it may be a beginning, and no other port is blamed meanwhile. By hand
+# s: how long a port must agree, how soon after its return a flag doubles that, and the most that it must. By hand;
+# docs/faults.md, column "taken back"
+RETURN, SOON, LONGEST = 1.0, 10.0, 60.0
 
 
 def longest_row(readings: Iterable[float]) -> int:
@@ -62,14 +70,14 @@ class Readmission:
         self.same = 0
 
     def flag(self, t: float, held: float = 0.0, held_variance: float = inf) -> None:
-        """Flag the port at `t`, s; `held` is the pressure that it is shut in with, Pa, if it is shut."""
+        """Flag the port at `t`, s; `held` is the pressure that is shut in, Pa, and its variance, Pa², if it is shut."""
         self._wait = min(2.0 * self._wait, LONGEST) if t - self._returned < SOON else RETURN
         self.faulty, self._agreed, self._stirred, self._heard = True, inf, 0.0, t
         self._trapped, self._held, self._held_variance = held_variance < inf, held, held_variance
 
     @property
     def repeating(self) -> bool:
-        """Whether the last readings may be the beginning of a row that is too long."""
+        """Whether the last readings may be the beginning of a row that is too long for a live sensor."""
         return FEW * self.same >= self._most
 
     def repeats(self, reading: float) -> bool:
@@ -106,7 +114,7 @@ class Readmission:
         return True
 
     def _stir(self, t: float, pressure: float) -> None:
-        """Whether the pressure that was shut in is being left."""
+        """Judge by a reading, Pa, whether the port has left the pressure that was shut in."""
         left, prior = pressure - self._held, self._held_variance + self._walk * max(t - self._heard, 0.0)
         self._heard = t
         spread = prior + self._variance

@@ -1,17 +1,19 @@
 """What f_x reads at rest on the rail: g·sin(elevation) and the bias together.
 
-Means over blocks of half a second; the one before the last is used, which holds nothing of a stroke that has begun.
+It is the mean over a block of half a second. The last block may hold the beginning of a stroke, so the one before
+counts.
 """
 
 from math import inf, sqrt
 
 from uavsim.onboard.plausible import MOST_FORCE
 
-NOISY = 10.0  # standard deviations of a reading, so far it is plausible at rest where it shakes heavily
-
-BLOCK = 0.5  # s
-WANDER = 0.02  # m/s², what a mean is off by beside its noise: the bias since then
-UNKNOWN = 5.0  # m/s², standard deviation while nothing has been read: that of a rail of up to 30°
+# standard deviations of a reading up to which it is plausible at rest, where heavy shaking makes more than the bound of
+# a force of flight. By hand
+NOISY = 10.0
+BLOCK = 0.5  # s of a mean: white noise of 1 m/s² at 1 kHz leaves 0.045 m/s². By hand
+WANDER = 0.02  # m/s², what a mean is off by beside its noise: the bias has changed since. By hand
+UNKNOWN = 5.0  # m/s², standard deviation while nothing has been read: g sin 30° is 4.9
 
 
 class RestForce:

@@ -4,10 +4,11 @@ With the mean pressure difference D of the last conversions at rest, tared, and 
 
     w = √(2 D/ρ),   V* = √(2 σ/ρ),   σ_w = V*²/(2 w)
 
-if w is at least 2 V*. Less cannot be told from none, nor a headwind from a tailwind: then the airspeed along the launch
-is 0 with the standard deviation √(w² + (0.63 V*)²), the second what a clipped root of noise is off by (`paper`).
+if w is at least 2 V*. A smaller wind cannot be told from none. Then the airspeed along the launch is taken for 0, with
+the standard deviation √(w² + (0.63 V*)²). The second part is what the clipped root of noise is off by (`paper`).
 
-A visible wind is a headwind until the push tells otherwise.
+A pressure does not tell a headwind from a tailwind. A wind that is seen is taken for a headwind until the push tells
+(`onset`).
 """
 
 from collections.abc import Iterable
@@ -16,11 +17,13 @@ from math import inf, sqrt
 from uavsim.onboard.airspeed.majority import Majority
 from uavsim.onboard.plausible import LEAST_PRESSURE, MOST_PRESSURE
 
-VISIBLE = 2.0  # V*
-HIDDEN = 0.632  # V*, rms of the clipped root at rest
-OPENED = 0.02  # s after the tare in which the last covered conversion leaves the head
-FEWEST = 3  # conversions
-STRONGEST = 60.0  # m/s; nobody launches in a hurricane: a port is broken, and nothing is known of the wind
+# V* from which on a wind is seen: there the root is linear in the noise, as for a valid airspeed (`paper`)
+VISIBLE = 2.0
+HIDDEN = 0.632  # V*, rms of the clipped root at rest, by the law of `paper`
+OPENED = 0.02  # s after the tare, in which the last covered conversion leaves the head: two periods at 100 Hz. By hand
+FEWEST = 3  # conversions; fewer say nothing of the wind. By hand
+# m/s. Beyond it a port is broken, for nobody launches in a hurricane, and nothing is known of the wind
+STRONGEST = 60.0
 
 Row = tuple[float, float, float, float, float, float]
 
@@ -66,8 +69,9 @@ def wind_at_rest(
 def turning(wind: float, each: float, density: float) -> float:
     """Airspeed from which a total pressure tells a headwind from a tailwind, if it was a headwind, m/s.
 
-    By then the push has given V − w = u: the pressure is of w + u or of |u − w|. They are told apart where u is three
-    standard deviations of an airspeed by one reading, and a good share of the wind.
+    By then the push has given u = V − w. The pressure is that of w + u in a headwind and of |u − w| in a tailwind. They
+    are told apart where u is three standard deviations of an airspeed by one reading, σ/(ρ w), but at least 0.3 w and
+    at most 1.5 w. Both bounds are by hand; test_a_launch_in_wind_is_known_by_its_end holds the check.
     """
     if not wind > 0.0:
         return 0.0

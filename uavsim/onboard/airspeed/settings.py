@@ -28,9 +28,10 @@ class AidedSettings:
     slope_time : float
         How long it remembers a climb, s; its standard deviation is slope_rate·√(slope_time/2).
     bias_sd : float
-        What f_x is off by, m/s²: the part's bias, and in flight the angle of attack, which turns f_x from the path.
+        What f_x is off by in flight beside the accelerometer's own offset, which its description tells, m/s²: the angle
+        of attack turns f_x from the path.
     bias_time : float
-        Correlation time of that in flight, s.
+        Correlation time of that, s.
     bias_rate : float
         How fast that wanders in steady flight and still air, the angle of attack apart, (m/s²)/√s: what the watch over
         the ports goes by; in declared turbulence five times as fast.

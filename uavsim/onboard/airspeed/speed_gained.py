@@ -2,15 +2,17 @@
 
     u(t) = ∫ f_x dt,        w(t) = Σ (σ_a·Δt)²
 
-u by the trapezoidal rule between readings, w the variance that white noise of standard deviation σ_a a reading has
-brought into it, which grows with time alone. A gap in the readings, five periods and more, and the time beyond the
-newest one count with the mean of the readings beside them and with an unknown acceleration of 5 m/s² standard deviation
-throughout.
+u is summed by the trapezoidal rule. w is the variance that the white noise of the readings, of standard deviation σ_a
+each, has brought into u. It grows with time alone.
 
-After a step of the clock (`uavsim.onboard.stamps`) nothing from before can be asked for: the ring begins anew, and u
+Where readings are missing, for five periods and more, and beyond the newest reading, u goes on with the mean of the
+readings beside. w then grows as by an unknown acceleration of 5 m/s² standard deviation that lasts for all of the gap.
+
+After a step of the clock (`uavsim.onboard.stamps`) nothing from before can be asked for. The ring begins anew, and u
 goes on.
 
-Fixed memory: the readings of the last `SIZE` periods and the last `GAPS` gaps; of older ones the variance stays.
+The memory is fixed: the readings of the last `SIZE` periods, and the last `GAPS` gaps. Of older gaps the variance
+stays.
 """
 
 from collections import deque
@@ -19,11 +21,13 @@ from math import inf, nan
 from uavsim.onboard.plausible import MOST_FORCE
 from uavsim.onboard.stamps import Stamps, jump
 
-SIZE = 1024  # readings; at 1 kHz a second
-GAPS = 16  # that are remembered; more than that in a second is no accelerometer
-GAP = 5.0  # periods
-NOISY = 10.0  # standard deviations of a reading, so far a force of flight is plausible where it shakes heavily
-GAP_SD = 5.0  # m/s², what an acceleration that nobody has read may be: that of a strong pull-up in flight
+SIZE = 1024  # readings that are kept, a second at 1 kHz: the replay of a launch asks for 0.3 s
+GAPS = 16  # gaps whose places are remembered. More of them in a second is no accelerometer: w is known in all only
+GAP = 5.0  # periods without a reading, from which on it is a gap; fewer are jitter. By hand
+# standard deviations of a reading up to which it is plausible in flight, where heavy shaking makes more than the bound
+# of a force of flight. By hand
+NOISY = 10.0
+GAP_SD = 5.0  # m/s², what an acceleration that nobody has read may be: that of a strong pull-up in flight. By hand
 
 
 class SpeedGained:
@@ -106,7 +110,7 @@ class SpeedGained:
         self._most, self._most_lift = max(most, self._shake), most
 
     def torn(self, variance: float, time: float) -> bool:
-        """Whether w has grown by so much, m²/s², in a time, s, that readings must have been missing."""
+        """Whether w has grown by so much, m²/s², in a time, s, that readings have been missing."""
         return variance > 4.0 * self._white * time + 0.25 * (GAP_SD * self._gap) ** 2
 
     def lift(self) -> float:

@@ -1,24 +1,26 @@
-"""The watch over both ports: the tests' bookkeeping, which of the two is to blame, and the way back.
+"""The watch over each port: its tests, where the filter goes on from after a flag, and the way back.
 
-A port that freezes is followed by the filter until the tests are sure, and V and b are by then what it made of them. So
-the last instant at which the live port was the better explanation is kept, with V, b and p. If it was the total
-pressure's, V is carried on from there by energy rate alone,
+A port that freezes is followed by the filter until the tests are sure. By then V and b are what the frozen port has
+made of them. So the watch keeps V, b and p of the last instant at which a live port explained the readings better.
+
+**Total port.** After its flag V is carried on from that instant by energy rate alone,
 
     V = V₀ + ∫ f_x dt − b T + (p − p₀)/(ρ V₀),        σ_V² = σ₀² + (σ_b T)² + gust · T + (σ_p/ρV₀)² + u²
 
-with T the time since, b and σ_b what f_x is off by and how well the filter of `frozen` knows it, and u what a port may
-have been off by before. A port that drifts is left 2 s before its flag, one that leaks (`leak`) where for 2 s no
-more than a gust had been between V and the force. If it was the static port, p is carried on with the climb c₀ of then,
-p = p_held − ρ g c₀ T, and V is corrected for it; the total pressure is taken on, and tells the climb by p_t and f_x.
+with T the time since; b and σ_b what f_x is off by and how well the filter of `frozen` knows that; u what the port may
+have been off by before. After a drift V goes back to 2 s before the flag. After a leak (`leak`) it goes back to where,
+for 2 s, no more than a gust had been between V and the force. After a jump nothing of it has been taken, and V stays.
 
-A static pressure that stands still in a climb makes the total pressure wrong, too: energy rate expects it to rise. Then
-the total pressure is no constant, and the static pressure is: that one is to blame. Which of the two tests is first is
-chance; the static pressure's goes by f_z alone and says nothing of a total pressure that is wrong, so it has the word.
+**Static port.** After its flag p is carried on with the climb c₀ of that instant, p = p_held − ρ g c₀ T. V is corrected
+for the difference. The total pressure is taken on; with f_x it tells the climb.
+
+Which of the two ports is to blame where both seem wrong is weighed in `ports`.
 """
 
 from math import exp, inf
 
-from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
+from uavsim.onboard.airspeed.air import GRAVITY
+from uavsim.onboard.airspeed.climb import ClimbTest
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.leak import LeakTest
@@ -29,22 +31,54 @@ from uavsim.onboard.airspeed.settings import AidedSettings
 Kept = tuple[float, float, float, float, float, float, float]
 """When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
 NOTHING: Kept = (-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-PACE, KEPT = 0.5, 5  # s between what is kept of V, and how many of them: a port that drifts is left 2 s before its flag
-GAP = 0.1  # s without a pressure, after which its tests begin anew
-UNSEEN = 0.5  # m/s, what a port may have been off by before the tests began to doubt it
-SLOW, LEARNT = 10.0, 5.0  # s, over which what f_x is off by is averaged while gusts allow, and at first in any case
-FINE = 6  # equal readings in a row that chance makes while noise is at least half a step
-LOST_SD = 0.2  # m/s², of that mean
-AGREE_SD = 5.0 / 3.0  # m/s; a port that drifted or leaked agrees within three of it, however little coasting knows
-DOUBTFUL = 4.0  # nats; less has a static port that lives in a climb, as a rule
-SHUT, SUSPECT = 14.0, 7.0  # nats, by which the static port is flagged, and if the total pressure seems to be wrong
-CLIMB_SD = 0.5  # m/s, of the climb by which a shut static port is left
-BIAS_SD = 0.1  # m/s², of the slow b
-SLOWEST = 10.0  # m/s, below which no wing flies
+
+# -- what is kept to go back to ----------------------------------------------------------------------------------------
+
+# s between what is kept of V, and how many of them: V goes back 2 s. By hand; drifts are flagged within 2 s
+# (docs/faults.md, leak-gusts and slow-leak-calm)
+PACE, KEPT = 0.5, 5
+# m/s, u: what a port may have been off by before its test began to doubt it. By hand; docs/faults.md holds the check:
+# after a flag 95 % of the valid estimates are within their error bars, but for a leak as slow as a gust
+UNSEEN = 0.5
+GAP = 0.1  # s without a pressure, after which a test begins anew: ten readings at 100 Hz. By hand
+
+# -- what f_x is off by, for the leak's test ---------------------------------------------------------------------------
+
+# s. It is averaged over the last 10 s, and only while no more than a usual gust is between V and the force, for a leak
+# must not be learnt. In the first 5 s it is learnt in any case. By hand; docs/faults.md, the leaks, holds the check
+SLOW, LEARNT = 10.0, 5.0
+LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried on after a leak. By hand, as `UNSEEN`
+
+# -- the way back ------------------------------------------------------------------------------------------------------
+
+# m/s. After a drift or a leak a port agrees within three of it, 5 m/s, however little the coasting filter knows: a port
+# that goes on leaking would agree with any airspeed at last. By hand; docs/faults.md, "After a flag"
+AGREE_SD = 5.0 / 3.0
+
+# -- sensors of coarse steps -------------------------------------------------------------------------------------------
+
+# equal readings in a row that chance makes while the noise is at least half a step. A longer row on the rail shows a
+# coarser sensor, whose readings say less. By hand; test_a_sensor_of_coarse_steps_may_repeat_itself
+FINE = 6
+
+# -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
+
+# above it the port is flagged. By hand; docs/faults.md: in a climb 100 of 100 within 0.54 s, in 500 healthy flights
+# none
+SHUT = 14.0
+# above it the static port is to blame where the total pressure seems wrong: half of `SHUT`, by hand. Without it a third
+# of the static ports that shut in a climb had the total port flagged, with it 1 of 100
+SUSPECT = 7.0
+# above it, in still air, a total port that seems shut waits for the static port's test. By hand: a live static port in
+# a climb stays below, as a rule
+DOUBTFUL = 4.0
+CLIMB_SD = 0.5  # m/s, of the climb by which p is carried on. By hand
+BIAS_SD = 0.1  # m/s², of b after the flag, which is taken from the total port's test. By hand
+LEAST_FLIGHT = 10.0  # m/s, below which no wing flies, and lift says nothing of the angle of attack
 
 
 def apart(usual: int) -> float:
-    """Return how many readings say as much as one: a sensor whose steps exceed its noise stays on one for a row."""
+    """Return how many readings say as much as one, by the longest row of equal ones that a live sensor has given."""
     return max(1.0, usual / FINE)
 
 
@@ -59,6 +93,10 @@ class TotalWatch:
         Of a reading's noise, Pa², and random walk of the pair's difference, Pa/√s.
     usual : int
         The longest row of equal readings that the live sensor has been seen to give.
+    offset_sd : float
+        Offset of f_x, m/s².
+    force_density : float
+        By how much noise of f_x widens its integral, m²/s³.
 
     Attributes
     ----------
@@ -68,18 +106,26 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_astray", "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_jumped", "_jumped_at", "_last",
-        "_lost", "_near", "_p", "_sound", "_still", "_t", "_t0", "_taught", "_u", "_u0", "_v", "_vv", "_wandering",
-        "faulty", "port",
+        "_astray", "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
+        "_jumped_at", "_last", "_lost", "_near", "_p", "_sound", "_still", "_t", "_t0", "_taught", "_u", "_u0",
+        "_v", "_vv", "_wandering", "faulty", "port",
     )  # fmt: skip
 
-    def __init__(self, aided: AidedSettings, variance: float, walk: float, usual: int = 0) -> None:
-        self._declared = aided.gust_sd > aided.gust_floor
+    def __init__(
+        self,
+        aided: AidedSettings,
+        variance: float,
+        walk: float,
+        usual: int = 0,
+        offset_sd: float = 0.0,
+        force_density: float = 0.0,
+    ) -> None:
+        self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = LeakTest(aided.gust_sd, aided.gust_length)
-        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared)
+        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared, offset_sd)
         self.faulty = self._astray = False
         self._t = self._t0 = -inf
         self._before: tuple[Kept, ...] = (NOTHING,)
@@ -120,15 +166,17 @@ class TotalWatch:
             self._near, self._taught = 0, 0.0
             self._wandering.forget()
         test = port.frozen
-        reach = (gust if self._declared else self._still) * v * dt
+        spread = (gust if self._declared else self._still) * v
+        if spread < self._force_density:  # noqa: PLR1730 - a coarse accelerometer hides more of V than still air
+            spread = self._force_density
         if t - self._before[-1][0] > PACE:
             now = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
             self._before = (*self._before[1 - KEPT :], now)
             self._near = self._near + 1 if self._wandering.near else 0
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
-        change, turn = gained - self._u, lift * lift / (v * v if v > SLOWEST else SLOWEST * SLOWEST)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, reach, turn) == 0.0
+        change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, spread * dt, turn) == 0.0
         if healthy or self._t0 == -inf:
             self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
             self._bias, self._bb = test.lost, test.lost_variance
@@ -138,7 +186,7 @@ class TotalWatch:
         return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
     def _wanders(self, v: float, gained: float, lost: float, dt: float) -> bool:
-        """Whether V has left what the force gave; what f_x is off by is learnt slowly, and not from a leak."""
+        """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away."""
         wandering = self._wandering
         if dt > 0.0 and (wandering.near or self._taught < LEARNT):
             self._taught += dt
@@ -152,7 +200,7 @@ class TotalWatch:
         self._t = -inf
 
     def jump(self, t: float, variance: float) -> None:
-        """Be told by how much the push has widened b at `t`, s: its variance, (m/s²)², which b forgets in its time."""
+        """Be told by which variance, (m/s²)², the push has widened b at `t`, s; b forgets that in its own time."""
         self._jumped, self._jumped_at = self._bias_variance(t) - self._bias_sd**2 + variance, t
 
     def _bias_variance(self, t: float) -> float:
@@ -162,12 +210,12 @@ class TotalWatch:
         return self._bias_sd * self._bias_sd + left
 
     def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
-        """Flag the port, and put the filter to where it would be without what it took since."""
+        """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong."""
         test = self.port.frozen
-        if kind == "jump":  # nothing has been taken of it
+        if kind == "jump":  # the filter has taken nothing of it
             self._t0, self._u0, self._v, self._vv, self._p = self._t, self._u, energy.v, energy.vv, energy.p
             self._bias, self._bb = test.lost, test.lost_variance
-        elif kind != "frozen":  # it has been wrong for a while: to before that
+        elif kind != "frozen":  # it had been wrong for a while before the flag
             before = self._sound if kind == "leak" else self._before[0]
             if before[0] > -inf:
                 self._t0, self._u0, self._v, self._vv, self._p, self._bias, self._bb = before
@@ -209,6 +257,8 @@ class StaticWatch:
         Of a reading's noise, Pa², and random walk of the sensor, Pa/√s.
     usual : int
         As of `TotalWatch`.
+    offset_sd : float
+        Offset of f_z, m/s².
 
     Attributes
     ----------
@@ -216,26 +266,26 @@ class StaticWatch:
         Whether the port is flagged.
     """
 
-    __slots__ = ("_back", "_t", "_test", "_variance", "faulty")
+    __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty")
 
-    def __init__(self, variance: float, walk: float, usual: int = 0) -> None:
-        self._variance = variance * apart(usual)
+    def __init__(self, variance: float, walk: float, usual: int = 0, offset_sd: float = 0.0) -> None:
+        self._variance, self._offset_sd = variance * apart(usual), offset_sd
         self._back = Readmission(variance, walk, usual)
-        self._test, self._t, self.faulty = ClimbTest(variance, 0.0), -inf, False
+        self._test, self._t, self.faulty = ClimbTest(variance, 0.0, offset_sd), -inf, False
 
     @property
     def suspect(self) -> bool:
-        """Whether it is to blame for a total pressure that does not fit."""
+        """Whether this port is to blame where the total pressure seems wrong."""
         return self._test.evidence > SUSPECT
 
     @property
     def repeating(self) -> bool:
-        """Whether its readings are perhaps stuck: too early to blame anybody."""
+        """Whether its readings may be stuck. It is too early then to blame the total port."""
         return self._back.repeating
 
     @property
     def doubtful(self) -> bool:
-        """Whether it perhaps stands still: too early to blame the total pressure for that."""
+        """Whether it may stand still. In still air it is too early then to blame the total port."""
         return self._test.evidence > DOUBTFUL
 
     def take(self, t: float, reading: float, lift: float, density: float) -> str:
@@ -258,13 +308,13 @@ class StaticWatch:
             return ""
         dt = t - self._t
         if dt > GAP:
-            self._test, dt = ClimbTest(self._variance, reading), 0.0
+            self._test, dt = ClimbTest(self._variance, reading, self._offset_sd), 0.0
         self._t = t
         evidence = self._test.add(reading, dt, lift, density * GRAVITY)
         return "frozen" if evidence > SHUT else ""
 
     def flag(self, kind: str, energy: EnergyFilter, density: float, bias: float) -> None:
-        """Flag the port; if it was shut, put the filter to where the climb of then would have led."""
+        """Flag the port; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
         self.faulty = True
         if kind != "frozen":

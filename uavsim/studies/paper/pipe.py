@@ -17,10 +17,9 @@ from math import pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from sensors.head import AFT
 from sensors.pneumatics import STANDARD, Line, bergh_tijdeman, second_order
 from sensors.probe import LIMITS, recovery
-from sensors.settings import TubeSettings
+from sensors.settings import AFT, TubeSettings
 from uavsim.studies.paper.entry import Entry
 
 Array = NDArray[np.float64]

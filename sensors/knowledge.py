@@ -1,0 +1,216 @@
+"""What anyone may believe of the readings who has the parts' descriptions and knows how they are set and mounted.
+
+Plain frozen numbers, standard deviations where an error is meant. The drawn unit is left out, and so is what breaks. A
+filter takes its model from here; what the simulator draws of the same descriptions is in the sensors. What no
+description holds:
+
+* Vibration averages over a reading of the integral as noise of its density in its band does: a variance of
+  σ_v² (f_s/2)/(f₂ − f₁) a reading at the rate f_s.
+* A drift of standard deviation σ and correlation time τ wanders at first as a random walk of density 2σ²/τ.
+* A tube of length L along the unit vector n, from the port to the sensor, holds a column of air that a specific force f
+  presses on the sensor with −ρ L n·f.
+* What a board heats itself by nobody has measured: it counts as a deviation of the thermometer.
+"""
+
+from dataclasses import dataclass
+from math import hypot, pi, sqrt
+
+from sensors.accelerometer_description import AccelerometerDescription
+from sensors.mounting import attitude, product, transposed
+from sensors.pneumatics import GAMMA, GAS_CONSTANT, STANDARD, laminar_lag
+from sensors.pressure_description import PressureDescription
+from sensors.settings import AccelerometerSettings, AirDataSettings, TubeSettings, Vector, VibrationSettings
+from sensors.unit import G0, unit_vector
+
+DENSITY = STANDARD["pressure"] / (GAS_CONSTANT * STANDARD["temperature"])  # kg/m³
+WARMTH_SD = 15.0  # K, of a die about 25 °C beside its own heat: -20 … 70 °C are three of them
+SWITCHED_ON = 60.0  # s, over which a walk of the offset counts
+COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
+
+
+@dataclass(frozen=True, slots=True)
+class AccelerometerKnowledge:
+    """What may be believed of a reading of the specific force f_x.
+
+    Attributes
+    ----------
+    rate : float
+        Readings a second, Hz.
+    noise_sd : float
+        White noise of one reading, vibration in flight included, m/s².
+    scale_sd : float
+        Scale error and what the temperature makes of it, a fraction.
+    offset_sd, lift_offset_sd : float
+        What f_x and f_z are off by at 1 g, constant in a flight or nearly so, m/s²: the part's offset, what temperature
+        and a minute make of it, what vibration is rectified to, what of the 1 g a scale error, the cross-axis
+        sensitivity and an error of the mounting bring into the axis, and the size of what `accelerometer.bias` adds.
+    lag : float
+        Age of a reading at its time stamp, s.
+    """
+
+    rate: float
+    noise_sd: float
+    scale_sd: float
+    offset_sd: float
+    lift_offset_sd: float
+    lag: float
+
+
+@dataclass(frozen=True, slots=True)
+class PressureKnowledge:
+    """What may be believed of a reading of one of the head's pressures.
+
+    Attributes
+    ----------
+    noise_sd : float
+        White noise of one reading, Pa.
+    window : float
+        Length of the conversion that a reading is the mean over, s.
+    lag : float
+        Age of the pressure beside half of that, s: the part's digital filter, and the tube.
+    walk : float
+        What drift and random walk are together as a random walk, Pa/√s.
+    column : float
+        Pressure of the air column in the tube for specific force along body x, Pa/(m/s²).
+    membrane_sd : float
+        Sensitivity of the membrane to specific force along body x, Pa/(m/s²); 0 where it is not felt.
+    """
+
+    noise_sd: float
+    window: float
+    lag: float
+    walk: float
+    column: float
+    membrane_sd: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeadKnowledge:
+    """What may be believed of a reading of the air-data head.
+
+    Attributes
+    ----------
+    rate : float
+        Readings a second, Hz.
+    total, static : PressureKnowledge
+    temperature_sd : float
+        Of the temperature, K: noise, turn-on offset, and what the board is warmer than the air.
+    column, column_sd : float
+        Error of the pair's difference per specific force along body x by the air in the tubes, and how far that is
+        unknown, Pa/(m/s²).
+    walk : float
+        Random walk of the pair's difference, Pa/√s.
+    """
+
+    rate: float
+    total: PressureKnowledge
+    static: PressureKnowledge
+    temperature_sd: float
+    column: float
+    column_sd: float
+    walk: float
+
+
+def known_of_accelerometer(settings: AccelerometerSettings, vibration: VibrationSettings) -> AccelerometerKnowledge:
+    """Return what may be believed of an accelerometer on an airframe that shakes so."""
+    part, shaking = settings.description(), settings.vibration_scale * vibration.flight_rms_g * G0
+    warmer = hypot(WARMTH_SD, settings.thermal.self_heating)
+    scale_sd = hypot(part.scale_sd, part.scale_tc_sd * warmer)
+    offset, _, lift_offset = _offsets(settings, part, warmer, shaking, scale_sd)
+    return AccelerometerKnowledge(
+        rate=part.rate,
+        noise_sd=hypot(part.noise_sd[0], part.resolution / sqrt(12.0), shaking * _share(vibration, part.rate)),
+        scale_sd=scale_sd,
+        offset_sd=offset,
+        lift_offset_sd=lift_offset,
+        lag=settings.delay + _delay(part),
+    )
+
+
+def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
+    """Return what may be believed of an air-data head."""
+    felt = settings.acceleration_sensitivity
+    parts = settings.total.description(), settings.static.description()
+    total, static = (
+        _known_of_pressure(part, tube, direction, normal if felt else None)
+        for part, (tube, direction), normal in zip(parts, settings.tubes(), settings.normals(), strict=True)
+    )
+    column = static.column - total.column
+    thermometer = parts[1]
+    return HeadKnowledge(
+        rate=settings.rate,
+        total=total,
+        static=static,
+        temperature_sd=hypot(
+            thermometer.temperature_noise_sd, thermometer.temperature_offset_sd, settings.thermal.self_heating
+        ),
+        column=column,
+        column_sd=COLUMN_SD * abs(column),
+        walk=hypot(total.walk, static.walk),
+    )
+
+
+def _known_of_pressure(
+    part: PressureDescription, tube: TubeSettings, direction: Vector, normal: Vector | None
+) -> PressureKnowledge:
+    """Return what may be believed of one pressure; `normal` is None where the membrane feels nothing."""
+    along = 0.0 if normal is None else unit_vector(normal, "normal of a membrane")[0]
+    return PressureKnowledge(
+        noise_sd=part.noise_sd,
+        window=part.mode.conversion_time,
+        lag=_lag(part, tube),
+        walk=sqrt(2.0 * part.drift_sd**2 / part.correlation_time + part.random_walk**2),
+        column=DENSITY * tube.length * unit_vector(direction, "direction of a tube")[0],
+        membrane_sd=abs(part.acceleration_sd * along),
+    )
+
+
+def _lag(part: PressureDescription, tube: TubeSettings) -> float:
+    """Age of a pressure beside half the conversion, s: digital filter and tube."""
+    a = part.iir_weight
+    filtered = (1.0 - a) / a / part.rate
+    if tube.length == 0.0:
+        return filtered
+    shape = {"length": tube.length, "diameter": tube.diameter, "volume": tube.volume}
+    return filtered + laminar_lag(**shape, **STANDARD, polytropic=GAMMA)
+
+
+def _delay(part: AccelerometerDescription) -> float:
+    """Delay of a steady signal in the part's low-pass, s."""
+    if not part.errors.bandwidth:
+        return 0.0
+    if not part.poles:
+        return 0.5 / part.rate
+    return sqrt(part.poles) / (2.0 * pi * part.bandwidth)  # Butterworth: 1/ω for one pole, √2/ω for two
+
+
+def _share(vibration: VibrationSettings, rate: float) -> float:
+    """White noise a reading that stands for vibration of unit rms."""
+    low, high = vibration.band_hz
+    return sqrt(0.5 * rate / (high - low))
+
+
+def _offsets(
+    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float, scale_sd: float
+) -> tuple[float, ...]:
+    """Standard deviations of the offsets along the body's axes at 1 g, m/s², of a die off 25 °C by so much, K."""
+    mounting = attitude(*settings.mounting_deg)
+    added = settings.bias if isinstance(settings.bias, tuple) else (settings.bias,) * 3
+    in_case = [
+        hypot(
+            part.bias_sd[i],
+            part.bias_tc_sd[i] * warmer,
+            part.drift_sd,
+            part.random_walk * sqrt(SWITCHED_ON),
+            part.rectification_sd * shaking**2,
+            scale_sd * G0 * down,
+            part.cross_axis_sd * G0 * sqrt(max(0.0, 1.0 - down * down)),
+            added[i],
+        )
+        for i, down in enumerate(mounting[2])  # the body's z axis in the case: along it there is 1 g
+    ]
+    turned = product(product(mounting, transposed(attitude(*settings.mounting_error_deg))), transposed(mounting))
+    return tuple(
+        hypot(*(share * sd for share, sd in zip(row, in_case, strict=True)), G0 * (seen[2] - level))
+        for row, seen, level in zip(mounting, turned, (0.0, 0.0, 1.0), strict=True)
+    )
