@@ -10,7 +10,7 @@ bad. The factors become part of the description, so the simulated unit and a fil
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import inf, sqrt
+from math import hypot, inf, pi, sqrt
 from typing import TypeVar
 
 from sensors.choice import choose
@@ -33,6 +33,7 @@ RECTIFICATION = number(0.0, 1e5)  # µg/g²: 0.1 g of offset from 1 g rms; the w
 DRIFT = number(0.0, 1e6)  # µg: 1 g of bias that wanders; parts have below 1000
 WALK = number(0.0, 1e6)  # µg/√s: 1 g after a second; parts have below 100
 
+SWITCHED_ON = 60.0  # s, over which a walk of the offset counts
 UNQUANTISED_BITS = 40  # stand for no quantisation: steps of range/2^39, 6e-10 m/s² at ±32 g
 
 
@@ -244,6 +245,49 @@ class AccelerometerDescription:
         """Standard deviation a sample of the readings' noise at this range, rate and filter, m/s²."""
         passed = enbw(self.noise_bandwidth, self.rate, self.poles or 1) / (self.rate / 2.0)
         return _times(self.white_sd, sqrt(passed))
+
+    @property
+    def reading_sd(self) -> Triple:
+        """Standard deviation of a reading's noise with its rounding, m/s²."""
+        x, y, z = (hypot(sd, self.resolution / sqrt(12.0)) for sd in self.noise_sd)
+        return x, y, z
+
+    @property
+    def lag(self) -> float:
+        """Age of a steady signal behind the part's low-pass, s."""
+        if not self.errors.bandwidth:
+            return 0.0
+        if not self.poles:
+            return 0.5 / self.rate
+        return sqrt(self.poles) / (2.0 * pi * self.bandwidth)  # Butterworth: 1/ω for one pole, √2/ω for two
+
+    def gain_sd(self, warmer: float) -> float:
+        """Standard deviation of the scale error, a fraction, of a die off 25 °C by so much, K."""
+        return hypot(self.scale_sd, self.scale_tc_sd * warmer)
+
+    def offset_sd(self, axis: int, *, warmer: float, shaking: float, down: float) -> float:
+        """Return the standard deviation of what an axis reads at rest less the truth, all terms together, m/s².
+
+        Parameters
+        ----------
+        axis : int
+            0, 1, 2 for x, y, z.
+        warmer : float
+            By how much the die may be off 25 °C, K.
+        shaking : float
+            Rms of the vibration, m/s².
+        down : float
+            Share of the 1 g that is along the axis, -1 … 1.
+        """
+        return hypot(
+            self.bias_sd[axis],
+            self.bias_tc_sd[axis] * warmer,
+            self.drift_sd,
+            self.random_walk * sqrt(SWITCHED_ON),
+            self.rectification_sd * shaking**2,
+            self.gain_sd(warmer) * G0 * down,
+            self.cross_axis_sd * G0 * sqrt(max(0.0, 1.0 - down * down)),
+        )
 
     @property
     def _passed(self) -> tuple[float, ...]:

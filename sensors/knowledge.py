@@ -6,14 +6,13 @@ description holds:
 
 * Vibration averages over a reading of the integral as noise of its density in its band does: a variance of
   σ_v² (f_s/2)/(f₂ − f₁) a reading at the rate f_s.
-* A drift of standard deviation σ and correlation time τ wanders at first as a random walk of density 2σ²/τ.
 * A tube of length L along the unit vector n, from the port to the sensor, holds a column of air that a specific force f
   presses on the sensor with −ρ L n·f.
 * What a board heats itself by nobody has measured: it counts as a deviation of the thermometer.
 """
 
 from dataclasses import dataclass
-from math import hypot, pi, sqrt
+from math import hypot, sqrt
 
 from sensors.accelerometer_description import AccelerometerDescription
 from sensors.mounting import attitude, product, transposed
@@ -24,7 +23,6 @@ from sensors.unit import G0, unit_vector
 
 DENSITY = STANDARD["pressure"] / (GAS_CONSTANT * STANDARD["temperature"])  # kg/m³
 WARMTH_SD = 15.0  # K, of a die about 25 °C beside its own heat: -20 … 70 °C are three of them
-SWITCHED_ON = 60.0  # s, over which a walk of the offset counts
 COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
 
 
@@ -115,15 +113,15 @@ def known_of_accelerometer(settings: AccelerometerSettings, vibration: Vibration
     """Return what may be believed of an accelerometer on an airframe that shakes so."""
     part, shaking = settings.description(), settings.vibration_scale * vibration.flight_rms_g * G0
     warmer = hypot(WARMTH_SD, settings.thermal.self_heating)
-    scale_sd = hypot(part.scale_sd, part.scale_tc_sd * warmer)
-    offset, _, lift_offset = _offsets(settings, part, warmer, shaking, scale_sd)
+    noise = hypot(*(share * sd for share, sd in zip(attitude(*settings.mounting_deg)[0], part.reading_sd, strict=True)))
+    offset, _, lift_offset = _offsets(settings, part, warmer, shaking)
     return AccelerometerKnowledge(
         rate=part.rate,
-        noise_sd=hypot(part.noise_sd[0], part.resolution / sqrt(12.0), shaking * _share(vibration, part.rate)),
-        scale_sd=scale_sd,
+        noise_sd=hypot(noise, shaking * _share(vibration, part.rate)),
+        scale_sd=part.gain_sd(warmer),
         offset_sd=offset,
         lift_offset_sd=lift_offset,
-        lag=settings.delay + _delay(part),
+        lag=settings.delay + part.lag,
     )
 
 
@@ -159,7 +157,7 @@ def _known_of_pressure(
         noise_sd=part.noise_sd,
         window=part.mode.conversion_time,
         lag=_lag(part, tube),
-        walk=sqrt(2.0 * part.drift_sd**2 / part.correlation_time + part.random_walk**2),
+        walk=part.walk,
         column=DENSITY * tube.length * unit_vector(direction, "direction of a tube")[0],
         membrane_sd=abs(part.acceleration_sd * along),
     )
@@ -167,21 +165,10 @@ def _known_of_pressure(
 
 def _lag(part: PressureDescription, tube: TubeSettings) -> float:
     """Age of a pressure beside half the conversion, s: digital filter and tube."""
-    a = part.iir_weight
-    filtered = (1.0 - a) / a / part.rate
     if tube.length == 0.0:
-        return filtered
+        return part.lag
     shape = {"length": tube.length, "diameter": tube.diameter, "volume": tube.volume}
-    return filtered + laminar_lag(**shape, **STANDARD, polytropic=GAMMA)
-
-
-def _delay(part: AccelerometerDescription) -> float:
-    """Delay of a steady signal in the part's low-pass, s."""
-    if not part.errors.bandwidth:
-        return 0.0
-    if not part.poles:
-        return 0.5 / part.rate
-    return sqrt(part.poles) / (2.0 * pi * part.bandwidth)  # Butterworth: 1/ω for one pole, √2/ω for two
+    return part.lag + laminar_lag(**shape, **STANDARD, polytropic=GAMMA)
 
 
 def _share(vibration: VibrationSettings, rate: float) -> float:
@@ -191,22 +178,13 @@ def _share(vibration: VibrationSettings, rate: float) -> float:
 
 
 def _offsets(
-    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float, scale_sd: float
+    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float
 ) -> tuple[float, ...]:
     """Standard deviations of the offsets along the body's axes at 1 g, m/s², of a die off 25 °C by so much, K."""
     mounting = attitude(*settings.mounting_deg)
     added = settings.bias if isinstance(settings.bias, tuple) else (settings.bias,) * 3
     in_case = [
-        hypot(
-            part.bias_sd[i],
-            part.bias_tc_sd[i] * warmer,
-            part.drift_sd,
-            part.random_walk * sqrt(SWITCHED_ON),
-            part.rectification_sd * shaking**2,
-            scale_sd * G0 * down,
-            part.cross_axis_sd * G0 * sqrt(max(0.0, 1.0 - down * down)),
-            added[i],
-        )
+        hypot(part.offset_sd(i, warmer=warmer, shaking=shaking, down=down), added[i])
         for i, down in enumerate(mounting[2])  # the body's z axis in the case: along it there is 1 g
     ]
     turned = product(product(mounting, transposed(attitude(*settings.mounting_error_deg))), transposed(mounting))

@@ -251,6 +251,20 @@ class PressureDescription:
         return _without_quantisation(self.mode.temperature_noise_sd * self.noise_scale, self.temperature_step)
 
     @property
+    def lag(self) -> float:
+        """Age of a pressure behind the digital filter, beside that of half a conversion, s."""
+        a = self.iir_weight
+        return (1.0 - a) / a / self.rate
+
+    @property
+    def walk(self) -> float:
+        """What drift and random walk are together, as a random walk, Pa/√s.
+
+        A drift of standard deviation σ and correlation time τ wanders at first as a random walk of density 2σ²/τ.
+        """
+        return sqrt(2.0 * self.drift_sd**2 / self.correlation_time + self.random_walk**2)
+
+    @property
     def bandwidth(self) -> float:
         """The -3 dB frequency, Hz: of the digital filter, else of the mean over the conversion window."""
         a = self.iir_weight
