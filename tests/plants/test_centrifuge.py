@@ -11,9 +11,9 @@ import pytest
 import uavsim
 from uavsim.cosim import replay
 from uavsim.flight import Flight, load
-from uavsim.plants.centrifuge import CentrifugeSettings, centrifuge
 from uavsim.plants.plant import Run
 from uavsim.plants.rail import body_axes
+from uavsim.plants.rigs.centrifuge import CentrifugeSettings, centrifuge
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
 from uavsim.scenario import load_scenario
 from uavsim.studies.batch import fly_seeds

@@ -2,13 +2,13 @@
 
 import pytest
 
-from uavsim.plants.centrifuge import CentrifugeSettings
 from uavsim.plants.choice import PlantSettings
 from uavsim.plants.kinds import KINDS, Kind
-from uavsim.plants.launch_curve import LaunchCurveSettings
 from uavsim.plants.plant import Run
+from uavsim.plants.rigs.centrifuge import CentrifugeSettings
+from uavsim.plants.rigs.launch_curve import LaunchCurveSettings
+from uavsim.plants.rigs.wind_tunnel import WindTunnelSettings
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
-from uavsim.plants.wind_tunnel import WindTunnelSettings
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,9 @@ import uavsim
 from uavsim.cosim import replay
 from uavsim.flight import load
 from uavsim.onboard.launch import MultiLevelWindow
-from uavsim.plants.launch_curve import LaunchCurveSettings, launch_curve, shape
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import room
+from uavsim.plants.rigs.launch_curve import LaunchCurveSettings, launch_curve, shape
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
 from uavsim.truth import STANDARD_GRAVITY
 

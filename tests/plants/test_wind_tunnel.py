@@ -18,8 +18,8 @@ from uavsim.cosim import replay
 from uavsim.plants.choice import PlantSettings
 from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import room
+from uavsim.plants.rigs.wind_tunnel import WindTunnelSettings, stream, turbulence, wind_tunnel
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
-from uavsim.plants.wind_tunnel import WindTunnelSettings, stream, turbulence, wind_tunnel
 from uavsim.settings import SettingError
 from uavsim.truth import STANDARD_GRAVITY, UNITS
 

@@ -1,17 +1,14 @@
-"""Which plant a scenario chooses, and what each of ours is told before it starts.
-
-A new one is a file, with its settings and its kind, and its group below.
-"""
+"""Which plant a scenario chooses, and what it is told before it starts."""
 
 from dataclasses import dataclass, field
 from typing import Any
 
-from uavsim.plants.centrifuge import CentrifugeSettings
 from uavsim.plants.in_jsbsim import NAME
 from uavsim.plants.kinds import KINDS, Kind
-from uavsim.plants.launch_curve import LaunchCurveSettings
 from uavsim.plants.plant import Plant
-from uavsim.plants.wind_tunnel import WindTunnelSettings
+from uavsim.plants.rigs.centrifuge import CentrifugeSettings
+from uavsim.plants.rigs.launch_curve import LaunchCurveSettings
+from uavsim.plants.rigs.wind_tunnel import WindTunnelSettings
 
 
 def _nobody(*_: object) -> Plant:

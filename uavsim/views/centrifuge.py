@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from uavsim.plants.centrifuge import CentrifugeSettings
+from uavsim.plants.rigs.centrifuge import CentrifugeSettings
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
 from uavsim.views.launch import levels
