@@ -125,6 +125,11 @@ def _default(key: str, setting: "Field[Any]") -> str:
 
 # What a default of nothing stands for, by key, group or name; else it is the part's own.
 _NONE = {
+    "detector.options": "none",
+    "estimator.options": "none",
+    "plant.options": "none",
+    "version": "none",
+    "sha256": "none",
     "detector": "as `threshold`",
     "estimator": "by the gain",
     "normal": "by port",
@@ -154,6 +159,7 @@ def _shown(value: Any) -> str:
 
 
 _WORDS = {float: "number", int: "whole number", str: "text", bool: "true or false", type(None): ""}
+_DICTIONARIES = {Any: "group of keys", float: "JSBSim property = number"}
 _SIGNS = (("ge", "≥"), ("gt", ">"), ("le", "≤"), ("lt", "<"))
 
 
@@ -177,7 +183,7 @@ def _allowed(hint: Any) -> str:
         if is_dataclass(members[0]):
             return "list of groups, below"
         return f"list of {_allowed(members[0])}" if len(members) == 1 else f"list of {len(members)} numbers"
-    return "JSBSim property = number" if origin is dict else _WORDS[hint]
+    return _WORDS[hint] if origin is None else _DICTIONARIES[get_args(hint)[1]]
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""Which plant a scenario chooses, and what it is told before it starts."""
+"""Which plant a scenario chooses, and what each of ours is told before it starts.
+
+A new rig is a file in `rigs`. The settings of those below have groups of their own in [plant].
+"""
 
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,6 @@
-"""Rigs that hold the sensors and the detector, a file each.
+"""Rigs: plants on the ground that hold the sensors and the detector, a file each with its settings and its kind.
 
-To add one, write a file here that registers it (`uavsim.plants.kinds.plant`); it is found by being here, and its
-settings stand under [plant.options].
+To add one, write a file here that registers it (`uavsim.plants.kinds.plant`); it is found by being here.
 """
 
 from importlib import import_module

@@ -1,6 +1,6 @@
 """Tables 1 and 2: three methods on the fitted launch-force curve, without and with noise.
 
-The curve is printed as a drawing only (figures 7 and 8). Ours is the ring of `plants.rigs.launch_curve` at 1 kHz,
+The curve is printed as a drawing only (figures 7 and 8). Ours, at 1 kHz, is the ring of `plants.rigs.launch_curve`,
 
     x/A = min(t/3 ms, 1) (1 + 0.5 e^{-t/50 ms} cos(2π 120 Hz t + 315°)) + σ ξ,      threshold 3/4 A, n = 10, k₁ = 0.8
 
