@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from uavsim.cosim import draw, fly
 from uavsim.flight import Flight
 from uavsim.interrupts import Interrupts
+from uavsim.onboard.airspeed.kinds import is_aided
 from uavsim.plugins import load, loaded
 from uavsim.scenario import Scenario, scenario_of
 from uavsim.score import HIDDEN
@@ -220,7 +221,7 @@ def _trace(flight: Flight, *, with_course: bool) -> ErrorTrace:
     filtered, raw = (
         _binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")
     )
-    bounded = scenario_of(flight).estimator.kind == "aided" and flight.score["launch"]["detected_time"] is not None
+    bounded = is_aided(scenario_of(flight).estimator.kind) and flight.score["launch"]["detected_time"] is not None
     return ErrorTrace(
         flight.score["seed"],
         filtered,

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from uavsim.onboard.airspeed.kinds import is_aided
 from uavsim.studies.airspeed_flights import bound, course, together
 from uavsim.views import curves
 from uavsim.views.faults import set_faults
@@ -82,7 +83,7 @@ def _not_valid(axes: "Axes", t: Array, valid: Array) -> None:
 def _bound(record: Record) -> tuple[Array, Array] | None:
     """Times and least standard deviation on this flight's own course, where the aided estimator flew; else None."""
     flown = record.scenario
-    if not (record.has("truth") and flown.plant.chosen.flies and flown.estimator.kind == "aided"):
+    if not (record.has("truth") and flown.plant.chosen.flies and is_aided(flown.estimator.kind)):
         return None
     needed = (("launch", "true_time"), ("launch", "detected_time"), ("flight", "rail_exit_time"), ("airspeed", "rmse"))
     if any(record.scored(*keys) is None for keys in needed):

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from uavsim.onboard.airspeed.kinds import is_aided
 from uavsim.scenario import Scenario, scenario_of
 from uavsim.views.faults import noticed, set_faults, told
 
@@ -61,7 +62,7 @@ def _stroke(flight: "Flight", scenario: Scenario) -> str:
     if ratio <= 1.0:
         return f"{said}."
     launch = flight.score["launch"]["detected_time"] is not None
-    unaided = scenario.estimator.kind == "aided" and not launch
+    unaided = is_aided(scenario.estimator.kind) and not launch
     why = "; without a detected launch the specific force does not aid it." if unaided else "."
     return f"{said}: while the airspeed rises the filter's lag adds to the sensors' delay{why}"
 

@@ -49,6 +49,11 @@ KINDS: Registry[Kind] = Registry("estimator")
 """Every kind that is registered."""
 
 
+def is_aided(name: str) -> bool:
+    """Whether a kind takes readings of specific force; of one that is not registered here nobody knows it."""
+    return name in KINDS and KINDS[name].aided
+
+
 def one_of_ours(name: str) -> Callable[[C], C]:
     """Register a class that is built by ``cls(settings, noise, tare_window)`` with the keys of [estimator]."""
 
