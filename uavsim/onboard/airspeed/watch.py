@@ -106,9 +106,9 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_astray", "_bb", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
-        "_jumped_at", "_last", "_lost", "_near", "_p", "_sound", "_still", "_t", "_t0", "_taught", "_u", "_u0",
-        "_v", "_vv", "_wandering", "faulty", "port",
+        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
+        "_last", "_lost", "_near", "_p", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
+        "port",
     )  # fmt: skip
 
     def __init__(
@@ -127,10 +127,11 @@ class TotalWatch:
         self._wandering = LeakTest(aided.gust_sd, aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared, offset_sd)
         self.faulty = self._astray = False
-        self._t = self._t0 = -inf
+        self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
+        self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
-        self._sound, self._near, self._taught = NOTHING, 0, 0.0
-        self._u = self._u0 = self._v = self._vv = self._p = self._bias = self._bb = self._last = self._lost = 0.0
+        self._near, self._taught = 0, 0.0
+        self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
     def take(
         self,
@@ -161,7 +162,7 @@ class TotalWatch:
         port, dt, v = self.port, t - self._t, energy.v
         if dt > GAP:
             port.restart()
-            dt, self._u, self._t0 = 0.0, gained, -inf
+            dt, self._u, self._trusted = 0.0, gained, NOTHING
             self._before, self._sound, self._last = (NOTHING,), NOTHING, v
             self._near, self._taught = 0, 0.0
             self._wandering.forget()
@@ -177,9 +178,8 @@ class TotalWatch:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
         healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, spread * dt, turn) == 0.0
-        if healthy or self._t0 == -inf:
-            self._t0, self._u0, self._v, self._vv, self._p = t, gained, v, energy.vv, energy.p
-            self._bias, self._bb = test.lost, test.lost_variance
+        if healthy or self._trusted is NOTHING:
+            self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
         if self._wanders(v, change - energy.s * dt, test.lost, dt):
             return "leak"
@@ -213,22 +213,22 @@ class TotalWatch:
         """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong."""
         test = self.port.frozen
         if kind == "jump":  # the filter has taken nothing of it
-            self._t0, self._u0, self._v, self._vv, self._p = self._t, self._u, energy.v, energy.vv, energy.p
-            self._bias, self._bb = test.lost, test.lost_variance
+            self._trusted = self._t, self._u, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
         elif kind != "frozen":  # it had been wrong for a while before the flag
             before = self._sound if kind == "leak" else self._before[0]
-            if before[0] > -inf:
-                self._t0, self._u0, self._v, self._vv, self._p, self._bias, self._bb = before
-        speed = max(self._v, 1.0)
-        since, slope = self._t - self._t0, density * speed
+            if before is not NOTHING:
+                self._trusted = before
+        then, u, v, vv, p, self._bias, bb = self._trusted
+        speed = max(v, 1.0)
+        since, slope = self._t - then, density * speed
         if kind == "frozen":
             self.port.back.flag(self._t, test.held, test.held_variance)
         else:
             self.port.back.flag(self._t)
         self.faulty, self._astray = True, kind in ("drift", "leak")
-        v = self._v + self._u - self._u0 - self._bias * since + (energy.p - self._p) / slope
-        bb = min(self._bb, self._bias_sd * self._bias_sd)
-        vv = self._vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
+        v = v + self._u - u - self._bias * since + (energy.p - p) / slope
+        bb = min(bb, self._bias_sd * self._bias_sd)
+        vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
 
