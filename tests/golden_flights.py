@@ -113,6 +113,11 @@ FLIGHTS: dict[str, Wanted] = {
         *NOT_TWICE, "duration=11", "air_data.total_port.tube.length=0.3", "air_data.static_port.error=0.002",
         'air_data.total_port.faults=[{kind="leak",start=5.5,time_constant=1.5},{kind="blocked",start=5.5}]',
     )),
+    "slow-leak-in-gusts": ("gusty", 28, (
+        *NOT_TWICE, "duration=15", "environment.gust_speed=0", "environment.turbulence_wind_20ft=6.5",
+        'air_data.total_port.faults=[{kind="leak",start=9,time_constant=2},{kind="blocked",start=9}]',
+        'air_data.total.faults=[{kind="dropout",start=5,stop=5.25}]',
+    )),
     "ice-and-water": ("catapult", 17, (
         *NOT_TWICE, "duration=9", "air_data.total_port.tube.length=0.35", "air_data.static_port.tube.length=0.3",
         port("static", 'kind="water",start=4,stop=7,water_length=0.02'),

@@ -102,7 +102,7 @@ def run(todo: list[tuple[str, Mutant]], workers: int, folder: Path) -> list[Resu
         if ended != "passed":
             tail = (copies[0].folder / "tests.log").read_text(encoding="utf-8").splitlines()[-5:]
             raise RuntimeError("\n".join([f"the tests of {stratum!r} fail on the sound code", *tail]))
-        limits[stratum] = 3.0 * seconds + 10.0
+        limits[stratum] = 2.0 * seconds + 10.0
         sys.stderr.write(f"{stratum}: sound in {seconds:.1f} s\n")
     queue: Queue[tuple[str, Mutant]] = Queue()
     for item in todo:
