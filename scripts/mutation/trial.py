@@ -97,7 +97,6 @@ def run(todo: list[tuple[str, Mutant]], workers: int, folder: Path) -> list[Resu
     copies = [Copy(folder / str(i)) for i in range(workers)]
     limits = {}
     for stratum in dict.fromkeys(stratum for stratum, _ in todo):
-        copies[0].run(STRATA[stratum][1])  # the first time compiles
         ended, seconds = copies[0].run(STRATA[stratum][1])
         if ended != "passed":
             tail = (copies[0].folder / "tests.log").read_text(encoding="utf-8").splitlines()[-5:]
