@@ -195,7 +195,8 @@ FLIGHTS: dict[str, Wanted] = {
         "plant.launch_curve.ring_phase_deg=200", "plant.launch_curve.ring_decay=0.08",
     )),
     "tunnel-by-mach": ("mach06", 31, (
-        "plant.wind_tunnel.machs=[0.2,0.45]", "plant.wind_tunnel.hold=1.5", "plant.wind_tunnel.ramp=0.3", "duration=7", *NOT_TWICE,
+        "plant.wind_tunnel.machs=[0.2,0.45]", "plant.wind_tunnel.hold=1.5", "plant.wind_tunnel.ramp=0.3",
+        "duration=7", *NOT_TWICE,
         "plant.wind_tunnel.turbulence=0.005", "plant.wind_tunnel.turbulence_length=0.8",
         'estimator.kind="constant-velocity"', "estimator.q_total=40", "estimator.q_static=20",
     )),
