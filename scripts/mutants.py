@@ -19,7 +19,7 @@ A mutant changes one expression or statement:
 Docstrings, annotations, messages (f-strings, what is raised), imports, asserts, `__slots__` and protocols stay.
 
 Each runs in a copy of the tree of its worker's own, so that neither the user's tree nor another mutant is touched. The
-tests run with `-x` and without xdist; a time of three times that of the sound code and ten seconds more counts as
+tests run with `-x` and without xdist; a time of twice that of the sound code and ten seconds more counts as
 killed. Compiled loops are compiled anew for each mutant of theirs. First the sound code runs: if its tests fail, there
 is nothing to learn.
 
@@ -58,7 +58,10 @@ def drawn(stratum: str, count: int, seed: int) -> list[Mutant]:
 def missing(strata: list[str]) -> str:
     """Name the first file or test of some strata that does not exist; "" if all do."""
     named = ((name, path) for name in strata for paths in STRATA[name] for path in paths)
-    lost = next((f"{path} of the stratum {name!r}" for name, path in named if not (ROOT / path).is_file()), "")
+    lost = next(
+        (f"{path} of the stratum {name!r}" for name, path in named if not (ROOT / path.partition("::")[0]).is_file()),
+        "",
+    )
     return lost and f"{lost} does not exist; scripts/mutation/strata.py names it"
 
 

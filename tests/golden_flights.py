@@ -80,6 +80,31 @@ BELIEVED = (
     "mismatch.gust=1.3", "estimator.wind_sd=4", "estimator.aided.bias_time=4", "estimator.aided.gust_length=170",
     "estimator.aided.slope_time=4", "estimator.aided.replay=0.25", "estimator.vapour_fraction=0.01",
 )  # fmt: skip
+UNITS = (
+    "accelerometer.range_g=16", 'accelerometer.filter="rate/10"', "accelerometer.errors.bias=0.5",
+    "accelerometer.errors.cross_axis=2", "accelerometer.errors.nonlinearity=3", "accelerometer.errors.temperature=4",
+    "accelerometer.errors.drift=5", "accelerometer.errors.random_walk=3", "accelerometer.errors.clock=1.5",
+    'accelerometer.errors.drift_model="flicker"', "accelerometer.errors.saturation=false",
+    "accelerometer.errors.quantisation=false", "accelerometer.thermal.self_heating=3",
+    "air_data.acceleration_sensitivity=true", "air_data.total.normal=[0.8,0.1,0.6]", "air_data.static.normal=[0.3,0,1]",
+    "air_data.static.iir=2", "air_data.static.offset_pa=-25", "air_data.thermal.self_heating=4",
+    "air_data.thermal.lag=10", "air_data.thermal.powered_for=2",
+    *(f"air_data.{sensor}.errors.{term}={factor}" for sensor, more in (("total", 1.0), ("static", 1.3))
+      for term, factor in (("offset", 0.7 * more), ("solder", 1.2 * more), ("scale", 1.5 * more), ("drift", 2.0 * more),
+                           ("temperature", 3.0 * more), ("acceleration", 1.6 * more), ("thermometer", 1.4 * more),
+                           ("clock", 1.1 * more), ("random_walk", 2.5 * more), ("drift_model", '"flicker"'),
+                           ("saturation", "false"), ("quantisation", "false"))),
+    "air_data.total_port.tube.length=0.2", "air_data.total_port.tube.direction=[-0.9,0.2,0.3]",
+    "air_data.static_port.tube.length=0.3", "air_data.static_port.tube.volume=8e-8",
+)  # fmt: skip
+AIDED = (
+    "estimator.fastest=90", "estimator.aided.gust_sd=0.7", "estimator.aided.gust_floor=0.3",
+    "estimator.aided.gust_height=25", "estimator.aided.slope_rate=0.9", "estimator.aided.bias_sd=0.45",
+    "estimator.aided.bias_rate=0.003", "estimator.aided.static_walk=0.4", "estimator.aided.on_rail=25",
+    "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
+    "mismatch.acceleration_calibration=0.5", "flight_computer.speed_gain_min=12",
+    "aircraft.properties.ap/gain/pitch=0.3",
+)  # fmt: skip
 CLIMB = ("flight_computer.height=200", "flight_computer.climb_pitch_deg=5", "flight_computer.height_gain=0.01")
 NOT_TWICE = ("launcher.wait_min=1.7", "launcher.wait_max=1.9")  # a short wait: the flight is what is wanted
 
@@ -92,6 +117,7 @@ def port(which: str, fault: str) -> str:
 Wanted = tuple[str, int, tuple[str, ...]]
 FLIGHTS: dict[str, Wanted] = {
     "away": ("catapult", 11, (*PLACE, *RAIL, *SHAKING, *MOUNTED, *TUBES, *HELD, *BELIEVED, "duration=9")),
+    "other-units": ("catapult", 29, (*UNITS, *AIDED, *NOT_TWICE, "duration=8")),
     "gust": ("gusty", 12, (
         *NOT_TWICE, "duration=9", "environment.wind_from_deg=-25", "environment.gust_delay=1",
         "environment.gust_length_s=1.7", 'accelerometer.preset="adxl345"', "air_data.pipe=0.05",
@@ -112,6 +138,11 @@ FLIGHTS: dict[str, Wanted] = {
     "total-leaks": ("catapult", 16, (
         *NOT_TWICE, "duration=11", "air_data.total_port.tube.length=0.3", "air_data.static_port.error=0.002",
         'air_data.total_port.faults=[{kind="leak",start=5.5,time_constant=1.5},{kind="blocked",start=5.5}]',
+    )),
+    "slow-leak-in-gusts": ("gusty", 28, (
+        *NOT_TWICE, "duration=15", "environment.gust_speed=0", "environment.turbulence_wind_20ft=6.5",
+        'air_data.total_port.faults=[{kind="leak",start=9,time_constant=2},{kind="blocked",start=9}]',
+        'air_data.total.faults=[{kind="dropout",start=5,stop=5.25}]',
     )),
     "ice-and-water": ("catapult", 17, (
         *NOT_TWICE, "duration=9", "air_data.total_port.tube.length=0.35", "air_data.static_port.tube.length=0.3",
@@ -156,7 +187,18 @@ FLIGHTS: dict[str, Wanted] = {
     )),
     "launch-curve": ("launch-curve", 25, (
         "duration=4", *NOT_TWICE, 'plant.launch_curve.shape="trapezoid"', "plant.launch_curve.rise=0.01",
-        "plant.launch_curve.noise_sd_g=0.5",
+        "plant.launch_curve.noise_sd_g=0.5", "plant.launch_curve.length=0.25", "plant.launch_curve.fall=0.03",
+        "accelerometer.errors.bandwidth=false",
+    )),
+    "launch-curve-that-rings": ("launch-curve", 30, (
+        "duration=4", *NOT_TWICE, "plant.launch_curve.ring_fraction=0.4", "plant.launch_curve.ring_hz=90",
+        "plant.launch_curve.ring_phase_deg=200", "plant.launch_curve.ring_decay=0.08",
+    )),
+    "tunnel-by-mach": ("mach06", 31, (
+        "plant.wind_tunnel.machs=[0.2,0.45]", "plant.wind_tunnel.hold=1.5", "plant.wind_tunnel.ramp=0.3",
+        "duration=7", *NOT_TWICE,
+        "plant.wind_tunnel.turbulence=0.005", "plant.wind_tunnel.turbulence_length=0.8",
+        'estimator.kind="constant-velocity"', "estimator.q_total=40", "estimator.q_static=20",
     )),
 }  # fmt: skip
 

@@ -7,10 +7,14 @@ the sensors, estimate and events alone are on board, the score alone is the judg
 """
 
 import json
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 from golden_flights import FLIGHTS, differences, figures, fly, read, sums
+
+from uavsim.scenario import Scenario, keys, load_scenario
 
 ORDER = ("truth", "accelerometer", "air_data", "detector", "estimate", "events", "score")  # along the signal
 
@@ -24,6 +28,33 @@ def test_a_flight_gives_the_figures_that_are_kept(name: str) -> None:
 
 def test_no_flight_is_kept_that_is_not_flown() -> None:
     assert list(read()) == list(FLIGHTS)
+
+
+ELSEWHERE = {
+    "detector.": "the rules' own settings are varied in test_launch_*.py and test_detections.py",
+    "aircraft.model": "there is one aircraft; test_aircraft.py flies others",
+}
+"""Keys, or what they begin with, that no kept flight moves, and where they are moved."""
+
+
+def leaves(group: dict[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in group.items():
+        if isinstance(value, dict) and value:
+            yield from leaves(value, f"{before}{name}.")
+        else:
+            yield f"{before}{name}", value
+
+
+def test_every_key_is_away_from_its_default_in_one_of_them() -> None:
+    """A key that is only flown at its default hides its factor of 1 or its term of 0; a new one joins a flight here."""
+    default = dict(leaves(Scenario().to_dict()))
+    moved: set[str] = set()
+    for name, seed, overrides in FLIGHTS.values():
+        flown = dict(leaves(load_scenario(name, overrides=overrides, seed=seed).to_dict()))
+        moved |= {key for key, value in flown.items() if default.get(key) != value}
+    moved |= {key.partition(".properties.")[0] + ".properties" for key in moved if ".properties." in key}
+    still = [key for key in keys() if key not in moved and not key.startswith(tuple(ELSEWHERE))]
+    assert still == []
 
 
 def test_the_sums_see_a_shift_an_exchange_and_a_millionth() -> None:

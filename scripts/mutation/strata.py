@@ -12,7 +12,18 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "score": (("uavsim/score.py",), ("tests/test_score.py", FLIGHTS)),
     "cosim": (
         ("uavsim/cosim.py", "uavsim/beliefs.py"),
-        (FLIGHTS, "tests/test_beliefs.py", "tests/test_mismatch.py", "tests/test_cosim.py"),
+        (
+            FLIGHTS,
+            "tests/test_beliefs.py",
+            "tests/test_cosim.py::test_the_same_seed_is_the_same_flight_twice_in_one_process",
+            "tests/test_cosim.py::test_replay_of_its_own_readings_gives_the_flight",
+            "tests/test_cosim.py::test_replay_needs_no_truth",
+            "tests/test_cosim.py::test_replay_hands_on_the_readings_in_the_order_of_the_flight",
+            "tests/test_cosim.py::test_readings_reach_onboard_in_the_order_of_their_time_stamps",
+            "tests/test_cosim.py::test_commands_act_after_the_reading_that_caused_them",
+            "tests/test_cosim.py::test_a_diverged_flight_is_a_result_with_what_was_flown",
+            "tests/test_cosim.py::test_a_vibration_that_is_alike_in_all_phases_does_not_notice_the_rails_end",
+        ),
     ),
     "flight computer": (
         ("uavsim/onboard/flight_computer.py",),
@@ -31,7 +42,16 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("tests/onboard/test_airspeed_energy.py", "tests/onboard/test_airspeed_model.py", FLIGHTS),
     ),
     "rail": (("uavsim/plants/rail.py",), ("tests/plants/test_rail.py", FLIGHTS)),
-    "plant": (("uavsim/plants/jsbsim.py",), (FLIGHTS, "tests/plants/test_launch_physics.py")),
+    "plant": (
+        ("uavsim/plants/jsbsim.py",),
+        (
+            FLIGHTS,
+            "tests/plants/test_launch_physics.py",
+            "tests/studies/test_cost.py::test_a_step_that_records_nothing_flies_the_same",
+            "tests/plants/test_airframe.py::test_a_function_that_fails_at_the_start_is_a_line",
+            "tests/plants/test_airframe.py::test_a_function_that_fails_in_the_air_ends_the_flight_with_a_reason",
+        ),
+    ),
     "accelerometer": (
         ("sensors/accelerometer.py",),
         (FLIGHTS, "tests/sensors/test_sensors_accelerometer.py"),

@@ -168,6 +168,15 @@ def test_an_offset_does_not_move_the_end_of_the_stroke(offset: float) -> None:
     assert events(box)["stroke_end"] == events(launched())["stroke_end"]
 
 
+def test_where_readings_are_rarer_than_the_mean_is_long_one_of_them_is_the_mean() -> None:
+    """At 50 Hz 10 ms hold none: the first reading below the level begins the hold, the next one ends it."""
+    box = FlightComputer(SETTINGS, Spotter(2.04), Oracle(), 50.0)
+    feed(box, REST, 0.0, 2.0, 50.0)
+    feed(box, 8.0 * G, 2.0, 2.4, 50.0)
+    feed(box, -1.0, 2.4, 3.0, 50.0)
+    assert events(box)["stroke_end"] == pytest.approx(2.42)
+
+
 def test_a_dip_shorter_than_the_hold_does_not_end_the_stroke() -> None:
     box = computer(2.02)
     feed(box, REST, 0.0, 2.0)

@@ -269,6 +269,21 @@ def _mutant_ends_well(seed: int, tmp_path: Path) -> None:
 BASES = {"fw8": hostile.packaged(), "c172x": hostile.complete("c172x"), "f16": hostile.complete("f16")}
 
 
+def test_a_function_that_fails_at_the_start_is_a_line(tmp_path: Path) -> None:
+    """In a process of its own, which JSBSim would end when the aircraft is taken down: one line, status 2."""
+    index = "<sum><value>5</value><property>fcs/wing-pos-norm</property></sum>"
+    function = f'<aerodynamics><function name="aero/mine"><switch>{index}<value>1</value></switch></function>'
+    good = hostile.packaged()
+    main = good["fw8.xml"].replace(b"<aerodynamics>", function.encode())
+    folder = hostile.write(good | {"fw8.xml": main}, tmp_path / "fw8")
+    command = ["fly", "catapult", "--set", f"aircraft.model={folder}", "--no-plots", "--out", str(tmp_path / "out")]
+    done = subprocess.run([sys.executable, "-m", "uavsim.cli", *command], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("Error: ")
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_function_that_fails_in_the_air_ends_the_flight_with_a_reason(tmp_path: Path) -> None:
     """In a process of its own: JSBSim would end it when it is taken down."""
     index = "<product><value>5</value><property>fcs/wing-pos-norm</property></product>"

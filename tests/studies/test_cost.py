@@ -83,3 +83,18 @@ def test_the_onboard_cost_is_of_a_flight_at_1_khz(monkeypatch: pytest.MonkeyPatc
     assert len(flown) == 2 * cost.REPEATS
     assert found.steps == pytest.approx(6300, rel=0.05)  # the part's own clock
     assert 0.0 < 0.5 * found.mean < found.p99
+
+
+def test_a_step_that_records_nothing_flies_the_same() -> None:
+    """Through the latch, the push and half a second beyond the rail: the next row is that of the plant that records."""
+    launch = draw(SHORT)
+    steps = round((launch.release_time + 0.9) * 1000.0)
+    one, other = (JsbsimPlant(plant_settings(SHORT, launch)) for _ in range(2))
+    for _ in range(steps):
+        one.step()
+        other.step_unrecorded()
+    assert not one.on_rail
+    assert (other.k, other.t, other.on_rail) == (one.k, one.t, one.on_rail)
+    one.step()
+    other.step()
+    assert other.row == one.row
