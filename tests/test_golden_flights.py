@@ -31,6 +31,9 @@ def test_no_flight_is_kept_that_is_not_flown() -> None:
 
 
 ELSEWHERE = {
+    **dict.fromkeys(
+        ("plugins", "plant.options", "estimator.options"), "they are of parts of one's own, test_plugins.py"
+    ),
     "detector.": "the rules' own settings are varied in test_launch_*.py and test_detections.py",
     "aircraft.model": "there is one aircraft; test_aircraft.py flies others",
 }
