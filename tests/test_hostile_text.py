@@ -24,8 +24,8 @@ from sensors.bench_log import read_bench_log
 from sensors.catalogue import sheet
 from uavsim import cli
 from uavsim.flight import Flight
-from uavsim.studies.bench import Bench, put_on_bench
 from uavsim.studies.paper import Entry
+from uavsim.studies.sensor_bench import Bench, put_on_bench
 from uavsim.views import characterisation, datasheets, figure, pressure, terminal
 from uavsim.views.paper.page import page
 from uavsim.views.record import Record

@@ -17,7 +17,7 @@ from uavsim.flight import load
 from uavsim.logs import PAUSE, Recording, read_log, replay_log
 from uavsim.onboard.launch import DetectorSettings, default
 from uavsim.truth import STANDARD_GRAVITY
-from uavsim.views import recording as view
+from uavsim.views import log as view
 
 RECORDINGS = os.environ.get("UAVSIM_RECORDINGS")
 ONSET, STROKE, PUSH = 3.0, 0.25, 80.0  # s, s, m/s²

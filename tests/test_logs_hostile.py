@@ -102,7 +102,7 @@ def test_columns_of_extremes_are_one_line(tmp_path: Path, columns: list[str], va
 @pytest.mark.parametrize("scale", [1e300, 1e200, 1e13, 1e10, 1e-300])
 def test_values_of_any_size_are_replayed_and_drawn_without_a_warning(tmp_path: Path, scale: float) -> None:
     """Warnings are errors here."""
-    from uavsim.views import recording as view
+    from uavsim.views import log as view
 
     table = frame(end=2.0, onset=1.0)
     table[list(FORCE)] *= scale
@@ -119,7 +119,7 @@ def test_values_of_any_size_are_replayed_and_drawn_without_a_warning(tmp_path: P
 
 @pytest.mark.parametrize("start", [1e14, 1e10, -1e14])
 def test_times_far_from_0_are_drawn_without_a_warning(tmp_path: Path, start: float) -> None:
-    from uavsim.views import recording as view
+    from uavsim.views import log as view
 
     table = frame(rate=20.0, end=10.0)
     table["t"] += start

@@ -13,7 +13,7 @@ from PIL import Image
 from sensors import record_at_rest
 from sensors.bench import columns_of, on_bench
 from sensors.bench_log import read_bench_log
-from uavsim.studies.bench import Bench, check_hours, put_on_bench, read_log
+from uavsim.studies.sensor_bench import Bench, check_hours, put_on_bench, read_log
 from uavsim.views import characterisation as view
 
 PARTS = {"adxl345": ("fx", "fy", "fz"), "bmp390": ("pressure",)}

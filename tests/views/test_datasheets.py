@@ -12,7 +12,7 @@ from sensors.bench import on_bench
 from sensors.bench_log import read_bench_log
 from sensors.catalogue import FOLDER, accelerometer, sheet
 from sensors.noise_fit import Coefficient
-from uavsim.studies.bench import Bench, put_on_bench
+from uavsim.studies.sensor_bench import Bench, put_on_bench
 from uavsim.views import datasheets
 
 Capture = pytest.CaptureFixture[str]

@@ -15,7 +15,7 @@ from uavsim.flight import Flight
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.studies.batch import Batch
 from uavsim.studies.batch_cramer_rao import AgainstBound
-from uavsim.studies.cost import Cost, OnboardCost
+from uavsim.studies.bench import Cost, OnboardCost
 from uavsim.studies.quantiles import quantile_band
 from uavsim.views import terminal
 

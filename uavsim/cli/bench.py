@@ -28,7 +28,7 @@ def bench(
     """
     from uavsim.failure import PartError
     from uavsim.scenario import load_scenario
-    from uavsim.studies.cost import measure, measure_onboard
+    from uavsim.studies.bench import measure, measure_onboard
     from uavsim.views import documents, terminal
 
     plug_in(plugin)

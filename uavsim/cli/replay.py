@@ -87,7 +87,7 @@ def _replay_log(
     from uavsim.logs import read_log, replay_log
     from uavsim.scenario import load_scenario
     from uavsim.views import documents, terminal
-    from uavsim.views import recording as view
+    from uavsim.views import log as view
 
     other = [given for given in settings if not given.strip().startswith("detector.")]
     if other:

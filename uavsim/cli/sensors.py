@@ -59,7 +59,7 @@ def sensors(
         return
     from sensors.bench import UNITS, on_bench
     from sensors.choice import choose
-    from uavsim.studies.bench import check_hours, put_on_bench, read_log
+    from uavsim.studies.sensor_bench import check_hours, put_on_bench, read_log
     from uavsim.views.characterisation import save_bench
 
     if mapping is not None and compare is None:

@@ -1,141 +1,172 @@
-"""A part on the bench: what its description promises, what a simulated record shows, what somebody's own log shows."""
+"""What a step costs: the flight in the loop against the same JSBSim with the same truth recorded.
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from pathlib import Path
+Three flights of the same aircraft and launch, JSBSim's own outputs off, advance side by side in chunks:
 
-from sensors.accelerometer_description import AccelerometerDescription
-from sensors.bench import Array, blocks, columns_of, gathered
-from sensors.bench_log import BenchLog, parse_map, read_bench_log
-from sensors.catalogue import Description
-from sensors.characterise import FEWEST, Characterisation, characterise
-from sensors.promise import Promise, promises
-from sensors.unit import Unit
+* in loop: plant, sensors, flight computer, all of it recorded;
+* reference: the plant alone, every truth column recorded at every step, flown by the command tape of the first;
+* bare: the same without recording.
 
-MOST_HOURS = 1000.0  # h
-MOST_READINGS = 5e9  # in one record; about an hour of computing
-HOUR = 3600.0  # s
+Machines are noisy, so the ratio is the median over pairs of neighbouring chunks, not a quotient of totals. The
+reference must end in the same state bit for bit, or it was not the same flight.
 
+Of that, what would run on the aircraft: detector and airspeed estimator over a flight's own readings at 1 kHz and
+100 Hz, from the rail to cruise, both all the way. The mean is that of the whole run, timed once; the percentile is over
+single steps, each with the clock's own cost in it.
+"""
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Bench:
-    """A part on the bench.
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from statistics import median
+from time import perf_counter
 
-    Attributes
-    ----------
-    description : AccelerometerDescription or PressureDescription
-    hours : float
-        Length of the simulated record, h.
-    seed : int
-    unit : str
-        Which unit was simulated.
-    promises : tuple of Promise
-        What the description promises, a channel each.
-    simulated : tuple of Characterisation
-        The same channels; the correlation time of the drift is taken as promised.
-    log : BenchLog or None
-        Somebody's own record.
-    compared : tuple of Characterisation
-        The same channels of the log; empty without one.
-    """
+from uavsim.beliefs import believed_air, believed_noise
+from uavsim.cosim import Cosimulation, Draws, draw, plant_settings, tare_window
+from uavsim.onboard import airspeed, launch
+from uavsim.plants.jsbsim import JsbsimPlant
+from uavsim.plants.plant import Commands
+from uavsim.scenario import Scenario
 
-    description: Description
-    hours: float
-    seed: int
-    unit: Unit
-    promises: tuple[Promise, ...]
-    simulated: tuple[Characterisation, ...]
-    log: BenchLog | None = None
-    compared: tuple[Characterisation, ...] = ()
-
-    @property
-    def setting(self) -> str:
-        """What the part is set to."""
-        d = self.description
-        if isinstance(d, AccelerometerDescription):
-            return f"±{d.range_g:g} g, {d.rate:g} Hz, filter {d.filter}"
-        return f"mode {d.mode.name}, {d.rate:g} Hz, filter {f'coefficient {d.iir}' if d.iir else 'off'}"
+CHUNK = 500  # plant steps
+PART, RATE = "icm-42688-p", 1000.0  # an accelerometer that has this output rate, Hz
+REPEATS = 5  # runs of the same readings, of which the fastest counts: the others were disturbed
 
 
-def check_hours(description: Description, hours: float) -> None:
-    """Make sure that a record of so many hours can be made and says something; ValueError if not."""
-    if not 0.0 < hours <= MOST_HOURS:
-        raise ValueError(f"{hours!r}: give a number of hours above 0, at most {MOST_HOURS:g}")
-    if hours * HOUR * description.rate > MOST_READINGS:
-        most = MOST_READINGS / HOUR / description.rate
-        raise ValueError(f"{hours:g} h are too long: give at most {most:.3g} at {description.rate:g} Hz")
-    least = 2.0 * FEWEST / description.rate
-    if hours * HOUR < least:
-        raise ValueError(f"{hours:g} h are too short: give at least {least / HOUR:.2g} at {description.rate:g} Hz")
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """Cost of a step, µs, and the ratios between the three ways to fly it."""
+
+    in_loop: float
+    reference: float
+    bare: float
+    ratio: float
+    ratio_over_bare: float
+    steps: int
+    same_state: bool
 
 
-def read_log(path: Path, description: Description, mapping: str | None = None) -> BenchLog:
-    """Read somebody's log of such a part.
+@dataclass(frozen=True, slots=True)
+class OnboardCost:
+    """Cost of a step of detector and estimator together, µs: mean and 99th percentile."""
 
-    Parameters
-    ----------
-    path
-        A CSV file with t and fx, fy, fz, or pressure and if it likes temperature, in SI.
-    mapping
-        Columns that have other names there, `ours=theirs,…`, theirs with a factor if need be: `fx=ax*9.80665`.
+    mean: float
+    p99: float
+    steps: int
+
+
+def measure_onboard(scenario: Scenario) -> OnboardCost:
+    """Run detector and estimator of a scenario over the readings of its flight with an accelerometer at 1 kHz."""
+    accelerometer = replace(scenario.accelerometer, preset=PART, rate=RATE, range_g=None, filter=None)
+    timed = Scenario.from_dict(replace(scenario, accelerometer=accelerometer).to_dict())
+    simulation = Cosimulation(timed)
+    while not simulation.ended:
+        simulation.advance(CHUNK)
+    forces, air = _rows(simulation.readings, 4), _rows(simulation.air_readings, 6)
+    whole, single = [], []
+    for _ in range(REPEATS):
+        whole.append(_run(timed, simulation.draws, forces, air, None))
+        steps: list[float] = []
+        _run(timed, simulation.draws, forces, air, steps)
+        single.append(sorted(steps)[int(0.99 * len(steps))])
+    return OnboardCost(mean=1e6 * min(whole) / len(forces), p99=1e6 * min(single), steps=len(forces))
+
+
+def _rows(flat: list[float], width: int) -> list[tuple[float, ...]]:
+    return list(zip(*(flat[i::width] for i in range(width)), strict=True))
+
+
+def _run(
+    scenario: Scenario,
+    draws: Draws,
+    forces: list[tuple[float, ...]],
+    air: list[tuple[float, ...]],
+    steps: list[float] | None,
+) -> float:
+    """Time a run, s; into `steps`, if it is a list, go the single steps."""
+    detector = launch.build(scenario.detector, RATE)
+    estimator = airspeed.build(
+        believed_air(scenario),
+        believed_noise(scenario, draws.calibration),
+        tare_window(scenario, draws.release_time),
+    )
+    feel, detect, step = estimator.accelerometer, detector.step, estimator.step
+    rows = iter([*air, (float("inf"),) * 6])
+    row, told = next(rows), False
+    begun = perf_counter()
+    for force in forces:
+        start = perf_counter() if steps is not None else 0.0
+        feel(*force)
+        if told:  # as the flight computer does it
+            estimator.tidy()
+            feel, told = estimator.accelerometer, False
+        if detect(*force):
+            estimator.launched(force[0])
+        if row[0] <= force[0]:
+            step(*row)
+            row, told = next(rows), True
+        if steps is not None:
+            steps.append(perf_counter() - start)
+    return perf_counter() - begun
+
+
+class _TapedPlant(JsbsimPlant):
+    """A plant that keeps the commands it was given, with the step from which they act."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        super().__init__(plant_settings(scenario, draw(scenario)))
+        self.tape: list[tuple[int, Commands]] = []
+
+    def command(self, commands: Commands) -> None:
+        self.tape.append((self.k, commands))
+        super().command(commands)
+
+
+def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
+    """Fly a scenario three ways at once and compare what a step takes.
 
     Raises
     ------
     ValueError
-        One line, if the file or the mapping is not as it should be.
+        If it is a rig, which JSBSim does not fly.
+        If the flight ends before its time; its last chunks would not compare.
     """
-    columns = columns_of(description)
-    needed = [name for name in columns if name != "temperature"]
-    sources = {} if mapping is None else parse_map(mapping, columns)
-    return read_bench_log(path, needed, columns[len(needed) :], sources)
-
-
-def put_on_bench(
-    description: Description,
-    *,
-    hours: float,
-    seed: int,
-    unit: Unit = "random",
-    log: BenchLog | None = None,
-    progress: Callable[[float], None] | None = None,
-) -> Bench:
-    """Simulate a record of a part at rest and characterise it, and a log beside it.
-
-    Parameters
-    ----------
-    description
-        The part, as `sensors.bench.on_bench` gives it.
-    hours, seed, unit
-        Length of the record, h; what is drawn.
-    log
-        A log of such a part.
-    progress
-        Called with the share that is done, 0 … 1.
-
-    Raises
-    ------
-    ValueError
-        If the hours are not positive or too few, or the unit is unknown.
-    """
-    check_hours(description, hours)
-    promised = promises(description)
-    channels = [promise.channel for promise in promised]
-    pieces = gathered(blocks(description, duration=hours * HOUR, seed=seed, unit=unit))
-    if progress is not None:
-        pieces = _told(pieces, hours * HOUR, progress)
-    return Bench(
-        description=description,
-        hours=hours,
-        seed=seed,
-        unit=unit,
-        promises=promised,
-        simulated=characterise(pieces, channels, promised[0].correlation_time or "flicker"),
-        log=log,
-        compared=() if log is None else characterise([log.table], channels),
+    if not scenario.plant.chosen.flies:
+        raise ValueError(f"{scenario.name}: plant.kind = {scenario.plant.kind!r}: only a flight in JSBSim has it")
+    leader = _TapedPlant(scenario)
+    loop = Cosimulation(scenario, plant=leader)
+    reference = JsbsimPlant(plant_settings(scenario, draw(scenario)))
+    bare = JsbsimPlant(plant_settings(scenario, draw(scenario)))
+    times: list[tuple[float, float, float]] = []
+    while leader.k < loop.steps:
+        first, begin = len(leader.tape), leader.k
+        start = perf_counter()
+        loop.advance(CHUNK)
+        middle = perf_counter()
+        if loop.ended not in ("", "completed"):
+            raise ValueError(f"{scenario.name}: the flight {loop.ended} at {leader.t:g} s; nothing to compare")
+        tape = leader.tape[first:]
+        begun = perf_counter()
+        _follow(reference, leader.k, tape, reference.step)
+        done = perf_counter()
+        _follow(bare, leader.k, tape, bare.step_unrecorded)
+        ended, steps = perf_counter(), leader.k - begin
+        times.append(((middle - start) / steps, (done - begun) / steps, (ended - done) / steps))
+        progress(leader.k / loop.steps)
+    per_step = [1e6 * median(column) for column in zip(*times, strict=True)]
+    return Cost(
+        in_loop=per_step[0],
+        reference=per_step[1],
+        bare=per_step[2],
+        ratio=median(a / b for a, b, _ in times),
+        ratio_over_bare=median(a / c for a, _, c in times),
+        steps=leader.k,
+        same_state=leader.row == reference.row,
     )
 
 
-def _told(pieces: Iterator[Array], duration: float, progress: Callable[[float], None]) -> Iterator[Array]:
-    for piece in pieces:
-        yield piece
-        progress(float(piece[-1, 0]) / duration)
+def _follow(plant: JsbsimPlant, until: int, tape: list[tuple[int, Commands]], step: Callable[[], object]) -> None:
+    """Fly `plant` to step `until`, giving each command of the tape when its turn comes."""
+    for k, commands in [*tape, (until, None)]:
+        for _ in range(k - plant.k):
+            step()
+        if commands is not None:
+            plant.command(commands)

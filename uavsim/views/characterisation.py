@@ -16,7 +16,7 @@ from sensors.characterise import Characterisation
 from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
 from uavsim.files import write_json
-from uavsim.studies.bench import Bench
+from uavsim.studies.sensor_bench import Bench
 from uavsim.views.figure import (
     BLACK,
     BLUE,

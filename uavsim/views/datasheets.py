@@ -12,7 +12,7 @@ from sensors.characterise import Characterisation
 from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
 from sensors.unit import G0
-from uavsim.studies.bench import Bench
+from uavsim.studies.sensor_bench import Bench
 from uavsim.views.characterisation import short, title
 from uavsim.views.characterisation import words as setting
 from uavsim.views.terminal import _console, _print, _table, say, words

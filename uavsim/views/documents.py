@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from uavsim.flight import Flight
     from uavsim.plugins import Source
     from uavsim.studies.batch import Batch
-    from uavsim.studies.bench import Bench
-    from uavsim.studies.cost import Cost, OnboardCost
+    from uavsim.studies.bench import Cost, OnboardCost
     from uavsim.studies.operating import Operating
+    from uavsim.studies.sensor_bench import Bench
     from uavsim.studies.tuning import Tuned
 
 Document = dict[str, Any]

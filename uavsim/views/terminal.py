@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from uavsim.flight import Flight
     from uavsim.scenario import Scenario
     from uavsim.studies.batch import Batch
-    from uavsim.studies.cost import Cost, OnboardCost
+    from uavsim.studies.bench import Cost, OnboardCost
 
 NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
 QUANTILES = {"5 %": "p05", "median": "median", "95 %": "p95"}  # of `batch_summary`

@@ -5,8 +5,8 @@ import pytest
 from uavsim.cosim import Cosimulation, draw, plant_settings
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.scenario import load_scenario
-from uavsim.studies import cost
-from uavsim.studies.cost import Cost, measure
+from uavsim.studies import bench
+from uavsim.studies.bench import Cost, measure
 
 SHORT = load_scenario("catapult", overrides=["duration=6.3"])  # not a whole number of chunks
 
@@ -38,13 +38,13 @@ def test_ratios_are_of_the_same_kind_as_the_times(measured: tuple[Cost, list[flo
 
 def test_the_tape_replays_the_flight() -> None:
     """Commands given at the same steps to a plant without sensors: the same row at each step, the throttle included."""
-    leader = cost._TapedPlant(SHORT)
+    leader = bench._TapedPlant(SHORT)
     loop = Cosimulation(SHORT, plant=leader)
     while not loop.ended:
         loop.advance(1000)
     assert len(leader.tape) > 50
     follower = JsbsimPlant(plant_settings(SHORT, draw(SHORT)))
-    cost._follow(follower, leader.k, leader.tape, follower.step)
+    bench._follow(follower, leader.k, leader.tape, follower.step)
     assert follower.k == leader.k
     assert follower.row == leader.row
     flown, followed = leader.truth(), follower.truth()
@@ -53,13 +53,13 @@ def test_the_tape_replays_the_flight() -> None:
 
 def test_a_tape_that_acts_a_step_late_is_another_flight() -> None:
     """Without this the test above could not fail."""
-    leader = cost._TapedPlant(SHORT)
+    leader = bench._TapedPlant(SHORT)
     loop = Cosimulation(SHORT, plant=leader)
     while not loop.ended:
         loop.advance(1000)
     late = [(min(k + 1, leader.k), commands) for k, commands in leader.tape]
     follower = JsbsimPlant(plant_settings(SHORT, draw(SHORT)))
-    cost._follow(follower, leader.k, late, follower.step)
+    bench._follow(follower, leader.k, late, follower.step)
     assert follower.row != leader.row
 
 
@@ -72,15 +72,15 @@ def test_a_flight_that_ends_early_is_not_measured() -> None:
 def test_the_onboard_cost_is_of_a_flight_at_1_khz(monkeypatch: pytest.MonkeyPatch) -> None:
     """Detector and estimator see the launch and all readings; a percentile of single steps is above half the mean."""
     flown: list[bool] = []
-    run = cost._run
+    run = bench._run
 
     def watched(*given: object) -> float:
         flown.append(True)
         return run(*given)
 
-    monkeypatch.setattr(cost, "_run", watched)
-    found = cost.measure_onboard(SHORT)
-    assert len(flown) == 2 * cost.REPEATS
+    monkeypatch.setattr(bench, "_run", watched)
+    found = bench.measure_onboard(SHORT)
+    assert len(flown) == 2 * bench.REPEATS
     assert found.steps == pytest.approx(6300, rel=0.05)  # the part's own clock
     assert 0.0 < 0.5 * found.mean < found.p99
 
