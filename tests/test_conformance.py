@@ -25,7 +25,10 @@ def test_our_detectors_pass(kind: str) -> None:
     check_detector(lambda rate: launch.build(DetectorSettings(kind=kind), rate))
 
 
-@pytest.mark.parametrize("kind", [kind for kind in airspeed.KINDS if kind != "paper-filterpy"])
+@pytest.mark.parametrize(
+    "kind",
+    [pytest.param(kind, marks=[pytest.mark.slow] if kind == "paper-filterpy" else []) for kind in airspeed.KINDS],
+)
 def test_our_estimators_pass(kind: str) -> None:
     class Ours(uavsim.onboard.airspeed.Estimator):
         def __new__(cls, _settings: None, knowledge: Any, tare_window: Any) -> Any:

@@ -469,3 +469,11 @@ def test_the_hours_that_plain_python_cannot_do_are_left_out_and_told(plugin: Pat
     assert reach.told(asked, done, reach.why(plain)).startswith(
         "held: without a compiled loop: so that it ends in about ten minutes, "
     )
+
+
+def test_what_a_plugin_prints_is_not_in_the_document(tmp_path: Path) -> None:
+    (tmp_path / "beside.py").write_text("LEVEL = 40.0\n", encoding="utf-8")
+    (tmp_path / "loud.py").write_text("import beside\nprint('hello')\n" + PLUGIN, encoding="utf-8")
+    loud = run("fly", "--plugin", "loud.py", *settings("detector.kind=held"), "--no-plots", "--json", cwd=tmp_path)
+    assert json.loads(loud.stdout)["score"]["launch"]["detector"] == "held"
+    assert "hello" in loud.stderr

@@ -222,6 +222,9 @@ def _import_file(name: str) -> Any:
         raise PluginError(f"--plugin {shown(name)}: is no file of Python; it must end in .py")
     module = importlib.util.module_from_spec(spec)
     sys.modules[key], _files[key] = module, (str(path), digest)
+    beside = str(path.resolve().parent)
+    if beside not in sys.path:
+        sys.path.append(beside)  # for what it imports from beside itself; what is installed comes first
     try:
         spec.loader.exec_module(module)
     except BaseException:

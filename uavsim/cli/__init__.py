@@ -13,6 +13,7 @@ from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, Interrupted, Wrong
 from uavsim.cli.fly import fly
 from uavsim.cli.paper import paper
 from uavsim.cli.plugins import plugins
+from uavsim.cli.printed import alone
 from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
@@ -39,7 +40,7 @@ class _Commands(TyperGroup):
 
 app = typer.Typer(cls=_Commands, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 for _command in COMMANDS:
-    app.command()(_command)
+    app.command()(alone(_command))
 
 # click's ClickException, wherever this typer keeps its click
 _UsageError: type[Exception] = typer.BadParameter.__mro__[2]

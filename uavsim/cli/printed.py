@@ -4,8 +4,12 @@ A document is made by `uavsim.views.documents`; what is only a remark goes to st
 """
 
 import json
-from collections.abc import Mapping
-from typing import Annotated, Any
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import redirect_stdout
+from contextvars import ContextVar
+from functools import wraps
+from typing import Annotated, Any, ParamSpec, TextIO
 
 import typer
 
@@ -14,9 +18,30 @@ from uavsim.views.text import visible
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, in SI, in place of tables.")]
 
 
+P = ParamSpec("P")
+_OUTPUT: ContextVar[TextIO | None] = ContextVar("_OUTPUT", default=None)
+
+
+def alone(command: Callable[P, None]) -> Callable[P, None]:
+    """Keep what a plug-in prints out of the document: with `--json` it goes to standard error."""
+
+    @wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        if not kwargs.get("as_json"):
+            return command(*args, **kwargs)
+        before = _OUTPUT.set(sys.stdout)
+        try:
+            with redirect_stdout(sys.stderr):
+                return command(*args, **kwargs)
+        finally:
+            _OUTPUT.reset(before)
+
+    return run
+
+
 def document(values: Mapping[str, Any]) -> None:
     """Print a document; in ASCII, so that it is right whatever the terminal can show."""
-    typer.echo(json.dumps(values, indent=2, allow_nan=False))
+    typer.echo(json.dumps(values, indent=2, allow_nan=False), file=_OUTPUT.get())
 
 
 def remark(text: str, *, as_json: bool) -> None:
