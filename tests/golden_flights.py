@@ -104,6 +104,7 @@ AIDED = (
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
     "mismatch.acceleration_calibration=0.5", "flight_computer.speed_gain_min=12",
     "aircraft.properties.ap/gain/pitch=0.3",
+    "aircraft.properties.inertia/pointmass-weight-lbs[1]=0.9",  # the right wing, which is 0.57 lb else: nothing is even
 )  # fmt: skip
 CLIMB = ("flight_computer.height=200", "flight_computer.climb_pitch_deg=5", "flight_computer.height_gain=0.01")
 NOT_TWICE = ("launcher.wait_min=1.7", "launcher.wait_max=1.9")  # a short wait: the flight is what is wanted
