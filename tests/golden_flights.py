@@ -150,6 +150,14 @@ FLIGHTS: dict[str, Wanted] = {
         port("static", 'kind="water",start=4,stop=7,water_length=0.02'),
         port("total", 'kind="ice",start=5,stop=8,duration=2'),
     )),
+    "pressures-jump": ("catapult", 32, (
+        *NOT_TWICE, "duration=12", 'air_data.total.faults=[{kind="offset",start=5.5,stop=7,size=400}]',
+        'air_data.static.faults=[{kind="offset",start=9,stop=10.5,size=-300}]',
+    )),
+    "knock-after-release": ("weak-launch", 33, (
+        *NOT_TWICE, "duration=5.5", "flight_computer.rearm_delay=0.5",
+        'accelerometer.faults=[{kind="offset",start=2.1,stop=2.16,size=60,axis="x"}]',
+    )),
     "readings-go-wrong": ("cheap-sensors", 18, (
         *NOT_TWICE, "duration=9",
         'air_data.total.faults=[{kind="spike",start=3,stop=6,size=400,probability=0.03},{kind="stuck",start=7,stop=8}]',
