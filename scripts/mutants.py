@@ -112,6 +112,8 @@ def main() -> int:
         except RuntimeError as error:
             sys.stderr.write(f"Error: {error}\n")
             return 2
+        except KeyboardInterrupt:  # while the sound code ran
+            return 130
     results.sort(key=lambda r: (given.only.index(r.stratum), r.mutant.file, r.mutant.line))
     if results:
         sys.stdout.write(f"{table(results)}\n\nAlive:\n{survivors(results)}\n")

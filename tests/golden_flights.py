@@ -105,6 +105,7 @@ AIDED = (
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
     "mismatch.acceleration_calibration=0.5", "flight_computer.speed_gain_min=12",
     "aircraft.properties.ap/gain/pitch=0.3",
+    "aircraft.properties.inertia/pointmass-weight-lbs[1]=0.9",  # the right wing, which is 0.57 lb else: nothing is even
 )  # fmt: skip
 CLIMB = ("flight_computer.height=200", "flight_computer.climb_pitch_deg=5", "flight_computer.height_gain=0.01")
 NOT_TWICE = ("launcher.wait_min=1.7", "launcher.wait_max=1.9")  # a short wait: the flight is what is wanted
@@ -149,6 +150,14 @@ FLIGHTS: dict[str, Wanted] = {
         *NOT_TWICE, "duration=9", "air_data.total_port.tube.length=0.35", "air_data.static_port.tube.length=0.3",
         port("static", 'kind="water",start=4,stop=7,water_length=0.02'),
         port("total", 'kind="ice",start=5,stop=8,duration=2'),
+    )),
+    "pressures-jump": ("catapult", 32, (
+        *NOT_TWICE, "duration=12", 'air_data.total.faults=[{kind="offset",start=5.5,stop=7,size=400}]',
+        'air_data.static.faults=[{kind="offset",start=9,stop=10.5,size=-300}]',
+    )),
+    "knock-after-release": ("weak-launch", 33, (
+        *NOT_TWICE, "duration=5.5", "flight_computer.rearm_delay=0.5",
+        'accelerometer.faults=[{kind="offset",start=2.1,stop=2.16,size=60,axis="x"}]',
     )),
     "readings-go-wrong": ("cheap-sensors", 18, (
         *NOT_TWICE, "duration=9",

@@ -26,6 +26,7 @@ class Copy:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._changes = 0
+        self._process: subprocess.Popen[bytes] | None = None
         for name in COPIED:
             skipped = shutil.ignore_patterns("__pycache__", "*.so")
             if (ROOT / name).is_dir():
@@ -33,9 +34,7 @@ class Copy:
             elif (ROOT / name).is_file():
                 shutil.copy2(ROOT / name, folder / name)
 
-    def run(
-        self, tests: tuple[str, ...], mutant: Mutant | None = None, limit: float | None = None
-    ) -> tuple[str, float]:
+    def run(self, tests: Tests, mutant: Mutant | None = None, limit: float | None = None) -> tuple[str, float]:
         """Run tests against a mutant; return how they ended, 'passed', 'failed' or 'time', and how long it took, s."""
         if mutant is None:
             return self._tests(tests, limit, "sound")
@@ -66,15 +65,20 @@ class Copy:
             process = subprocess.Popen(  # noqa: S603 - ours
                 command, cwd=self.folder, env=os.environ | kept, stdout=log, stderr=log, start_new_session=True
             )
+            self._process = process
             try:
                 status = process.wait(limit)
             except subprocess.TimeoutExpired:
                 return "time", time.monotonic() - began
             finally:
-                if process.poll() is None:
-                    os.killpg(process.pid, signal.SIGKILL)
-                    process.wait()
+                self.stop()
+                process.wait()
         return ("passed" if status == 0 else "failed"), time.monotonic() - began
+
+    def stop(self) -> None:
+        """End the tests that run, and all that they have started."""
+        if self._process is not None and self._process.poll() is None:
+            os.killpg(self._process.pid, signal.SIGKILL)
 
 
 @dataclass(frozen=True)
@@ -93,34 +97,40 @@ class Result:
 
 
 def run(todo: list[tuple[str, Mutant]], workers: int, folder: Path) -> list[Result]:
-    """Run the sound code, then all mutants; a line for each on standard error."""
+    """Run the sound code, then all mutants; a line for each on standard error.
+
+    Returns
+    -------
+    list of Result
+        Of all; after an interrupt of those that were finished.
+
+    Raises
+    ------
+    RuntimeError
+        If a test fails on the sound code.
+    """
     copies = [Copy(folder / str(i)) for i in range(workers)]
-    limits = {}
-    for stratum in dict.fromkeys(stratum for stratum, _ in todo):
-        ended, seconds = copies[0].run(STRATA[stratum][1])
-        if ended != "passed":
-            tail = (copies[0].folder / "tests.log").read_text(encoding="utf-8").splitlines()[-5:]
-            raise RuntimeError("\n".join([f"the tests of {stratum!r} fail on the sound code", *tail]))
-        limits[stratum] = 2.0 * seconds + 10.0
-        sys.stderr.write(f"{stratum}: sound in {seconds:.1f} s\n")
+    limits = {stratum: _limit(copies[0], stratum) for stratum in dict.fromkeys(stratum for stratum, _ in todo)}
     queue: Queue[tuple[str, Mutant]] = Queue()
     for item in todo:
         queue.put(item)
     results: list[Result] = []
-    failed: list[BaseException] = []
+    ended: list[BaseException] = []
 
     def work(own: Copy) -> None:
         try:
-            while not failed:
+            while True:
                 stratum, mutant = queue.get_nowait()
-                ended, seconds = own.run(STRATA[stratum][1], mutant, limits[stratum])
-                results.append(Result(stratum, mutant, ended, seconds))
-                text = f"{len(results)}/{len(todo)} {ended} {seconds:.0f} s  {mutant.file}:{mutant.line} {mutant.what}"
-                sys.stderr.write(text + "\n")
+                result = Result(stratum, mutant, *own.run(STRATA[stratum][1], mutant, limits[stratum]))
+                if ended:
+                    return
+                results.append(result)
+                where = f"{mutant.file}:{mutant.line} {mutant.what}"
+                sys.stderr.write(f"{len(results)}/{len(todo)} {result.ended} {result.seconds:.0f} s  {where}\n")
         except Empty:
             pass
         except BaseException as error:  # noqa: BLE001 - handed on below
-            failed.append(error)
+            ended.append(error)
 
     threads = [threading.Thread(target=work, args=(own,), daemon=True) for own in copies]
     for thread in threads:
@@ -128,10 +138,21 @@ def run(todo: list[tuple[str, Mutant]], workers: int, folder: Path) -> list[Resu
     try:
         for thread in threads:
             thread.join()
-    except KeyboardInterrupt:
-        failed.append(KeyboardInterrupt())
-        for thread in threads:
+    except KeyboardInterrupt as interrupt:
+        ended.append(interrupt)
+        for own, thread in zip(copies, threads, strict=True):
+            own.stop()
             thread.join()
-    if failed and not isinstance(failed[0], KeyboardInterrupt):
-        raise failed[0]
+    if ended and not isinstance(ended[0], KeyboardInterrupt):
+        raise ended[0]
     return results
+
+
+def _limit(own: Copy, stratum: str) -> float:
+    """Return how long the tests of a stratum may take, s, from how long they take on the sound code."""
+    ended, seconds = own.run(STRATA[stratum][1])
+    if ended != "passed":
+        tail = (own.folder / "tests.log").read_text(encoding="utf-8").splitlines()[-5:]
+        raise RuntimeError("\n".join([f"the tests of {stratum!r} fail on the sound code", *tail]))
+    sys.stderr.write(f"{stratum}: sound in {seconds:.1f} s\n")
+    return 2.0 * seconds + 10.0
