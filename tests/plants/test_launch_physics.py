@@ -161,18 +161,8 @@ def test_specific_force_is_the_sensors_acceleration_less_gravity(
     with one wing heavier than the other, those to the side, too.
     Tolerance 0.03 m/s^2 rms of a second difference over 4 ms, away from the edges of the contact forces.
     """
-<<<<<<< HEAD
-    settings = Run(WIND, LauncherSettings(), 1.4, RELEASE, accelerometer_position=position)
-=======
-    settings = JsbsimSettings(
-        AircraftSettings(properties=properties),
-        WIND,
-        LauncherSettings(),
-        1.4,
-        RELEASE,
-        accelerometer_position=position,
-    )
->>>>>>> sight
+    aircraft = AircraftSettings(properties=properties)
+    settings = Run(WIND, LauncherSettings(), 1.4, RELEASE, aircraft=aircraft, accelerometer_position=position)
     plant = JsbsimPlant(settings)
     for k in range(1400):
         if k == 700:
