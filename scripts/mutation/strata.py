@@ -47,7 +47,7 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         (
             FLIGHTS,
             "tests/plants/test_launch_physics.py",
-            "tests/studies/test_cost.py::test_a_step_that_records_nothing_flies_the_same",
+            "tests/studies/test_bench.py::test_a_step_that_records_nothing_flies_the_same",
             "tests/plants/test_airframe.py::test_a_function_that_fails_at_the_start_is_a_line",
             "tests/plants/test_airframe.py::test_a_function_that_fails_in_the_air_ends_the_flight_with_a_reason",
         ),
