@@ -477,3 +477,94 @@ def test_what_a_plugin_prints_is_not_in_the_document(tmp_path: Path) -> None:
     loud = run("fly", "--plugin", "loud.py", *settings("detector.kind=held"), "--no-plots", "--json", cwd=tmp_path)
     assert json.loads(loud.stdout)["score"]["launch"]["detector"] == "held"
     assert "hello" in loud.stderr
+
+
+# -- odd ones --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["", "a b", "../x", "x.py", "-x", "x\n", "x" * 65, "é\u202e"])
+def test_a_name_that_cannot_be_named_is_refused(name: str) -> None:
+    with pytest.raises(ValueError, match="cannot be a detector's name"):
+        plugins.detector(name)(_detector(lambda self, *_: False))
+
+
+def test_an_object_in_place_of_its_class_is_refused() -> None:
+    with pytest.raises(ValueError, match="give the class, not"):
+        uavsim.fly("catapult", overrides=SHORT, detector=_detector(lambda self, *_: False)(1000.0))
+    with pytest.raises(ValueError, match="give the class, not"):
+        uavsim.fly("catapult", overrides=SHORT, estimator=_estimator(lambda self, *_: None)())
+
+
+def test_settings_that_are_no_dataclass_are_refused() -> None:
+    odd = _detector(lambda self, *_: False)
+    odd.Settings = dict  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="Settings must be a dataclass"):
+        plugins.detector("odd")(odd)
+
+
+def test_settings_within_settings_come_as_their_classes() -> None:
+    @dataclass(frozen=True)
+    class Inner:
+        hold: float = 0.02
+        names: tuple[str, ...] = ("a",)
+
+    @dataclass(frozen=True)
+    class Outer:
+        inner: Inner = Inner()
+
+    seen = []
+    odd = _detector(lambda self, *_: False)
+    odd.Settings = Outer  # type: ignore[attr-defined]
+    odd.__init__ = lambda self, rate, settings: seen.append(settings)  # type: ignore[misc]
+    plugins.detector("nested")(odd)
+    flight = uavsim.fly("catapult", overrides=(*SHORT, "detector.kind=nested", "detector.options.inner.hold=1"))
+    assert seen[-1] == Outer(Inner(1.0, ("a",)))
+    assert flight.scenario["detector"]["options"] == {"inner": {"hold": 1.0, "names": ["a"]}}
+    assert Scenario.from_dict(flight.scenario).detector.options == seen[-1]
+
+
+class MuteError(Exception):
+    def __str__(self) -> str:
+        raise RuntimeError
+
+
+def test_an_exception_that_cannot_be_told_is_told(tmp_path: Path) -> None:
+    def fail(self: Any, *_: float) -> bool:
+        raise MuteError
+
+    flight = uavsim.fly("catapult", overrides=SHORT, detector=_detector(fail))
+    assert flight.score["reason"].startswith("detector 'Bad' raised MuteError: it does not say what at 0.0")
+
+
+@pytest.mark.parametrize(("news", "fails"), [([(1.0, "note", "total", "own")], False), ([1], True), ("told", True)])
+def test_an_estimators_news_are_events_or_a_reason(news: Any, fails: bool) -> None:
+    class Tells(uavsim.onboard.airspeed.Estimator):
+        def __init__(self, *given: Any) -> None:
+            self.told = news
+
+        news = property(lambda self: self.told)
+
+        def step(self, *reading: float) -> Any:
+            return 20.0, 5.0, True
+
+    flight = uavsim.fly("catapult", overrides=SHORT, estimator=Tells)
+    assert (flight.score["outcome"] == "onboard_failed") is fails
+    if not fails:
+        assert [e for e in flight.events if e["event"] == "note"] == [
+            {"t": 1.0, "event": "note", "channel": "total", "kind": "own"}
+        ]
+
+
+def test_what_is_called_as_we_are_is_not_ours(tmp_path: Path) -> None:
+    (tmp_path / "uavsim.py").write_text(PLUGIN, encoding="utf-8")
+    plugins.load([str(tmp_path / "uavsim.py")])
+    (source,) = Scenario.from_dict({"detector": {"kind": "held"}}).plugins
+    assert (source.name, source.source) == ("held", "uavsim.py")
+
+
+def test_a_part_that_raises_ends_the_operating_curve_with_a_line(tmp_path: Path) -> None:
+    (tmp_path / "bad.py").write_text(PLUGIN.replace("self.level = fx - self.settings.level", "1 / 0"), encoding="utf-8")
+    given = ("--plugin", "bad.py", "--detectors", "held", "--hours", "0.05", "--trials", "5", "--cells", "0")
+    refused = run("roc", *given, cwd=tmp_path)
+    assert refused.returncode == 2
+    assert refused.stderr == "Error: detector 'held' raised ZeroDivisionError: division by zero at 0.0000 s\n"

@@ -16,10 +16,18 @@ class PartError(Exception):
     """A part has failed; one line: which, when and how."""
 
 
+def said(error: BaseException) -> str:
+    """Return an exception's name and what it says, in one line, whatever it makes of being asked."""
+    try:
+        text = str(error)
+    except Exception:  # noqa: BLE001 (somebody else's class)
+        text = "it does not say what"
+    return " ".join(f"{type(error).__name__}: {text}".split())[:300]
+
+
 def raised(part: str, t: float, error: BaseException) -> PartError:
     """Say that a part raised an exception."""
-    said = " ".join(f"{type(error).__name__}: {error}".split())[:300]
-    return PartError(f"{part} raised {said} at {t:.4f} s")
+    return PartError(f"{part} raised {said(error)} at {t:.4f} s")
 
 
 @contextmanager
@@ -28,14 +36,13 @@ def built(part: str) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        said = " ".join(f"{type(error).__name__}: {error}".split())[:300]
-        raise ValueError(f"{part} cannot be made: {said}") from error
+        raise ValueError(f"{part} cannot be made: {said(error)}") from error
 
 
 def shown(answer: Any) -> str:
     """Return an answer in at most 80 letters."""
     try:
-        said = " ".join(repr(answer).split())
-    except Exception:  # noqa: BLE001
-        said = f"something of {type(answer).__name__}"
-    return said if len(said) <= 80 else f"{said[:77]}…"
+        text = " ".join(repr(answer).split())
+    except Exception:  # noqa: BLE001 (somebody else's class)
+        text = f"something of {type(answer).__name__}"
+    return text if len(text) <= 80 else f"{text[:77]}…"

@@ -8,17 +8,19 @@ the command line. Entry points are read as metadata; only the package whose name
 import hashlib
 import importlib
 import importlib.util
+import re
 import sys
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, packages_distributions, version
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from sensors.choice import nearest, shown
 from uavsim import settings
+from uavsim.failure import said
 from uavsim.onboard.airspeed.kinds import KINDS as ESTIMATORS
 from uavsim.onboard.airspeed.kinds import estimator
 from uavsim.onboard.launch.kinds import KINDS as DETECTORS
@@ -70,11 +72,6 @@ class Source:
         """Say who it is in a line."""
         told = self.version or (self.sha256 and f"SHA-256 {self.sha256[:12]}…")
         return f"{self.name!r} of {self.source}" + (f" ({told})" if told else "")
-
-    @property
-    def ours(self) -> bool:
-        """Whether it comes with uavsim."""
-        return self.source.partition(".")[0] == OURS
 
 
 class PluginError(ValueError):
@@ -132,7 +129,7 @@ def of_class(what: str, cls: Any) -> str:
     for kind in registry.values():
         if kind.cls is cls:
             return str(kind.name)
-    name = str(getattr(cls, "__name__", cls))
+    name = re.sub(r"[^\w.+-]", "", str(getattr(cls, "__name__", "")))[:64] or what
     DECORATORS[what](name)(cls)
     return name
 
@@ -212,6 +209,8 @@ def _import_file(name: str) -> Any:
     path = Path(name).expanduser()
     if not path.is_file():
         raise PluginError(f"--plugin {shown(name)}: there is no such file")
+    if path.stat().st_size > LARGEST:
+        raise PluginError(f"--plugin {shown(name)}: has more than {LARGEST} bytes")
     content = path.read_bytes()
     digest = hashlib.sha256(content).hexdigest()
     key = f"uavsim_plugin_{path.stem}_{hashlib.sha256(str(path.resolve()).encode()).hexdigest()[:12]}"
@@ -259,8 +258,9 @@ def _is_machinery(filename: str) -> bool:
 
 
 def _one_line(error: BaseException) -> str:
-    said = error.msg if isinstance(error, SyntaxError) else str(error)
-    return " ".join(f"{type(error).__name__}: {said}".split())[:400]
+    if isinstance(error, SyntaxError):
+        return " ".join(f"{type(error).__name__}: {error.msg}".split())
+    return said(error)
 
 
 # -- who they are ----------------------------------------------------------------------------------------------------
@@ -268,8 +268,8 @@ def _one_line(error: BaseException) -> str:
 
 def plugged_in(named: Mapping[str, str]) -> tuple[Source, ...]:
     """Return who those kinds are that do not come with uavsim; `named`: detector, estimator or plant, and its name."""
-    found = (source_of(what, find(what, name)) for what, name in named.items())
-    return tuple(source for source in found if not source.ours)
+    kinds = ((what, find(what, name)) for what, name in named.items())
+    return tuple(source_of(what, kind) for what, kind in kinds if _module(kind).partition(".")[0] != OURS)
 
 
 def sources(what: str) -> Iterator[Source]:
@@ -340,7 +340,7 @@ def check_options(what: str, options: type | None, given: Any) -> Any:
             raise SettingError(f"{where}: this {what} has no options", where)
         return None
     if isinstance(given, options):
-        given = {name: getattr(given, name) for name in settings.hints(options)}
+        given = asdict(cast(Any, given))
     try:
         return settings.read(options, given or {})
     except SettingError as error:

@@ -4,8 +4,12 @@ A registry is filled by those who have a kind: ours as they are imported, those 
 (`uavsim.plugins`). A name stands for one kind; it is never given to another.
 """
 
+import re
 from collections.abc import Iterator
+from dataclasses import is_dataclass
 from typing import Any, Generic, Protocol, TypeVar
+
+NAME = r"\w[\w.+-]{0,63}"
 
 
 class Named(Protocol):
@@ -55,9 +59,16 @@ class Registry(Generic[K]):
 
         Raises
         ------
+        ValueError
+            If its name is none.
         TakenError
-            If its name is taken.
+            If it is taken.
         """
+        if not re.fullmatch(NAME, str(kind.name)) or kind.name.endswith(".py"):
+            raise ValueError(
+                f"{str(kind.name)[:60]!r} cannot be a {self.what}'s name: it is at most 64 letters, digits and .+-_, "
+                "does not begin with a sign nor end in .py"
+            )
         if kind.name in self._kinds and _place(self._kinds[kind.name]) != _place(kind):
             raise TakenError(f"there is already a {self.what} {kind.name!r}; choose another name")
         self._kinds[kind.name] = kind
@@ -81,3 +92,22 @@ class Registry(Generic[K]):
     def values(self) -> Iterator[K]:
         """The kinds themselves."""
         return iter(self._kinds.values())
+
+
+def own_settings(cls: Any, who: str) -> type | None:
+    """Return a class's own `Settings`, None if it has none.
+
+    Raises
+    ------
+    ValueError
+        If they are no dataclass.
+    """
+    options = getattr(cls, "Settings", None)
+    if options is not None and not (isinstance(options, type) and is_dataclass(options)):
+        raise ValueError(f"{who}: Settings must be a dataclass")
+    return options
+
+
+def made(options: type, given: Any) -> Any:
+    """Return options as their class: they come as one, as a mapping, or not at all."""
+    return given if isinstance(given, options) else options(**(given or {}))

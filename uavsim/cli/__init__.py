@@ -20,6 +20,7 @@ from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
 from uavsim.cli.survey import survey
 from uavsim.cli.tune import tune
+from uavsim.failure import PartError
 from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
@@ -105,7 +106,7 @@ def _run() -> int:
         return DONE
     except OSError as error:
         return _complain(told(error))
-    except WrongInputError as error:
+    except (WrongInputError, PartError) as error:
         return _complain(str(error))
     if status == INTERRUPTED:  # click's, before a command began
         _say("interrupted")

@@ -26,7 +26,6 @@ def bench(
 
     Example: uavsim bench catapult --plugin mine.py --set detector.kind=mine
     """
-    from uavsim.failure import PartError
     from uavsim.scenario import load_scenario
     from uavsim.studies.bench import measure, measure_onboard
     from uavsim.views import documents, terminal
@@ -34,11 +33,8 @@ def bench(
     plug_in(plugin)
     with user_input(), Bar("measuring") as bar:
         loaded = load_scenario(scenario, overrides=settings or ())
-        try:
-            cost = measure(loaded, progress=bar.show)
-            onboard = measure_onboard(loaded)
-        except PartError as failure:
-            raise ValueError(failure) from None
+        cost = measure(loaded, progress=bar.show)
+        onboard = measure_onboard(loaded)
     if as_json:
         document(documents.cost(cost, onboard))
     else:

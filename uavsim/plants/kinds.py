@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from uavsim.registry import Registry
+from uavsim.registry import Registry, own_settings
 
 if TYPE_CHECKING:
     from uavsim.plants.plant import Plant
@@ -94,5 +94,5 @@ def kind_of(cls: Callable[..., Any], name: str, **says: Any) -> Kind:
     """
     if not callable(cls):
         raise ValueError(f"plant {name!r}: {cls!r} cannot be called")  # noqa: TRY004 (one line for the user)
-    options = getattr(cls, "Settings", None)
+    options = own_settings(cls, f"plant {name!r}")
     return Kind(name, cls, "" if options is None else OPTIONS, options, **says)

@@ -17,6 +17,7 @@ import random
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from uavsim.failure import said
 from uavsim.onboard.interface import Detector
 from uavsim.onboard.launch.guarded import STATE
 from uavsim.testing.hostile import Force, readings
@@ -85,14 +86,14 @@ class _Trial:
         try:
             return self.make(self.rate)
         except Exception as error:
-            raise AssertionError(f"{self.name} cannot be made by {self.name}({self.rate:g}): {_said(error)}") from error
+            raise AssertionError(f"{self.name} cannot be made by {self.name}({self.rate:g}): {said(error)}") from error
 
     def step(self, detector: Any, reading: Force) -> bool:
         """Step it; its answer must be True or False."""
         try:
             answer = detector.step(*reading)
         except Exception as error:
-            raise AssertionError(f"{self.name}.step{reading} raises {_said(error)}") from error
+            raise AssertionError(f"{self.name}.step{reading} raises {said(error)}") from error
         expect(
             isinstance(answer, bool) or type(answer).__name__ in ("bool_", "bool"),
             f"{self.name}.step{reading} gives {answer!r}; it must give True or False",
@@ -177,7 +178,7 @@ class _Trial:
         try:
             detector.reset()
         except Exception as error:
-            raise AssertionError(f"{self.name}.reset() raises {_said(error)}") from error
+            raise AssertionError(f"{self.name}.reset() raises {said(error)}") from error
 
     def recovers(self, delay: float) -> None:
         """Recognise a launch some time after nonsense, each kind of it alone."""
@@ -256,10 +257,6 @@ NONSENSE: dict[str, Callable[[Force], Force]] = {
     "stamps that were 10 s behind": _stamp(-10.0),
 }
 """What one reading in ten is for a second."""
-
-
-def _said(error: BaseException) -> str:
-    return " ".join(f"{type(error).__name__}: {error}".split())[:200]
 
 
 def _ms(seconds: float) -> str:

@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from uavsim.failure import PartError
+from uavsim.failure import PartError, said
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel, PaperFilter
 from uavsim.onboard.airspeed.guarded import GuardedEstimator
 from uavsim.onboard.airspeed.kinds import kind_of
@@ -71,9 +71,8 @@ class _Trial:
         try:
             made = kind_of(self.make, self.name).build(settings, self.knowledge, COVERED)  # type: ignore[arg-type]
         except Exception as error:
-            said = " ".join(f"{type(error).__name__}: {error}".split())[:200]
             raise AssertionError(
-                f"{self.name} cannot be made by {self.name}(settings, knowledge, tare_window): {said}"
+                f"{self.name} cannot be made by {self.name}(settings, knowledge, tare_window): {said(error)}"
             ) from error
         return GuardedEstimator(self.name, made, PaperFilter(settings, self.knowledge, COVERED))
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.failure import PartError
+from uavsim.failure import PartError, said
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.kinds import kind_of
 from uavsim.plants.plant import Commands, Plant, Run
@@ -95,8 +95,7 @@ def _made(name: str, make: Make, settings: Any, run: Run) -> tuple[Plant, Guarde
     except PartError as failure:
         raise AssertionError(str(failure)) from failure
     except Exception as error:
-        said = " ".join(f"{type(error).__name__}: {error}".split())[:200]
-        raise AssertionError(f"{name} cannot be made by {name}(settings, run): {said}") from error
+        raise AssertionError(f"{name} cannot be made by {name}(settings, run): {said(error)}") from error
 
 
 def _look_at_the_air(name: str, plant: GuardedPlant) -> None:
@@ -115,7 +114,7 @@ def _truth(name: str, plant: Plant, guarded: GuardedPlant, forces: NDArray[np.fl
     try:
         truth = plant.truth()
     except Exception as error:
-        raise AssertionError(f"{name}.truth() raises {type(error).__name__}: {error}") from error
+        raise AssertionError(f"{name}.truth() raises {said(error)}") from error
     missing = [column for column in UNITS if column not in truth]
     _expect(
         not missing, f"{name}.truth() lacks the column {missing[0] if missing else ''!r}; NaN for what there is none"

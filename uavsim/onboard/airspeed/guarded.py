@@ -28,13 +28,14 @@ class GuardedEstimator(Estimator):
         Reads the same, tares the pair and gives the raw airspeed.
     """
 
-    __slots__ = ("_aided", "_estimator", "_part", "_pressures", "_t")
+    __slots__ = ("_aided", "_estimator", "_news", "_part", "_pressures", "_t")
 
     def __init__(self, name: str, estimator: Any, pressures: PaperFilter) -> None:
         self._part, self._estimator, self._t = f"estimator {name!r}", estimator, nan
         taken = getattr(type(estimator), "accelerometer", None)
         self._aided = taken is not None and taken is not Estimator.accelerometer
         self._pressures = pressures
+        self._news: News = []
 
     @property
     def aided(self) -> bool:
@@ -44,8 +45,7 @@ class GuardedEstimator(Estimator):
     @property
     def news(self) -> News:
         """What it has found of its sensors."""
-        found: News = getattr(self._estimator, "news", [])
-        return found
+        return self._news
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take a reading of specific force."""
@@ -90,6 +90,7 @@ class GuardedEstimator(Estimator):
             raise
         except BaseException as error:
             raise raised(self._part, t, error) from error
+        self._collect()
         read = self._pressures.step(t, p_total, p_static, temperature, t_total, t_static)
         if answer is None:
             return None
@@ -100,13 +101,27 @@ class GuardedEstimator(Estimator):
                 nis = nis_[0], nis_[1]
             else:
                 speed, sd, valid = map(float, answer)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise PartError(
                 f"{self._part} answered {shown(answer)} at {t:.4f} s; it must be None, (airspeed, sd, valid) or a "
                 "whole estimate"
             ) from None
         self._check(answer, speed, sd, valid)
         return t, speed, sd, nan if read is None else read[3], total, static, valid == 1.0, nis[0], nis[1]
+
+    def _collect(self) -> None:
+        """Take over its news, and empty them."""
+        told = getattr(self._estimator, "news", None)
+        if not told:
+            return
+        try:
+            news = [(float(t), str(event), str(channel), str(kind)) for t, event, channel, kind in told]
+            told.clear()
+        except (TypeError, ValueError, AttributeError):
+            raise PartError(
+                f"{self._part} has news {shown(told)} at {self._t:.4f} s; it is a list of (t, event, channel, kind)"
+            ) from None
+        self._news += news
 
     def _check(self, answer: Any, speed: float, sd: float, valid: float) -> None:
         if valid not in (0.0, 1.0):

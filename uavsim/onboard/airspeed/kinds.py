@@ -5,13 +5,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from uavsim.onboard.interface import Estimator, TareWindow
-from uavsim.registry import Registry
+from uavsim.registry import Registry, made, own_settings
 
 if TYPE_CHECKING:
     from uavsim.onboard.airspeed.interface import NoiseModel
     from uavsim.onboard.airspeed.settings import EstimatorSettings
 
 C = TypeVar("C", bound=type)
+
+
+class NoEstimatorError(ValueError):
+    """A class that lacks what an estimator has."""
 
 
 @dataclass(frozen=True)
@@ -97,14 +101,14 @@ def kind_of(cls: type, name: str) -> Kind:
     ValueError
         If the class is no estimator.
     """
+    if not isinstance(cls, type):
+        raise NoEstimatorError(f"estimator {name!r}: give the class, not {cls!r}")
     step = getattr(cls, "step", None)
     if not callable(step) or step is Estimator.step:
-        raise ValueError(f"estimator {name!r}: {getattr(cls, '__name__', cls)} has no method 'step'")
-    options: type | None = getattr(cls, "Settings", None)
+        raise NoEstimatorError(f"estimator {name!r}: {getattr(cls, '__name__', cls)} has no method 'step'")
+    options = own_settings(cls, f"estimator {name!r}")
 
     def build(settings: "EstimatorSettings", noise: "NoiseModel", tare_window: TareWindow | None) -> Any:
-        given = settings.options
-        own = None if options is None else given if isinstance(given, options) else options(**(given or {}))
-        return cls(own, noise, tare_window)
+        return cls(None if options is None else made(options, settings.options), noise, tare_window)
 
     return Kind(name, cls, build, options)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from uavsim.onboard.interface import Detector
 from uavsim.onboard.launch.detector import require
-from uavsim.registry import Registry
+from uavsim.registry import Registry, made, own_settings
 
 if TYPE_CHECKING:
     from uavsim.onboard.launch.settings import DetectorSettings
@@ -263,10 +263,12 @@ def kind_of(cls: type, name: str, *, level: str = "", unit: str = "") -> Kind:
     ValueError
         If the class is no detector.
     """
+    if not isinstance(cls, type):
+        raise NoDetectorError(f"detector {name!r}: give the class, not {cls!r}")
     for method in ("step", "reset"):
         if not callable(getattr(cls, method, None)):
             raise NoDetectorError(f"detector {name!r}: {getattr(cls, '__name__', cls)} has no method {method!r}")
-    options = getattr(cls, "Settings", None)
+    options = own_settings(cls, f"detector {name!r}")
     names = {f.name for f in fields(options)} if options is not None else set()
     return Kind(
         name=name,
@@ -279,8 +281,3 @@ def kind_of(cls: type, name: str, *, level: str = "", unit: str = "") -> Kind:
         level=Level(f"{OPTIONS}.level", unit) if "level" in names else None,
         panels=(Panel(f"{level}, {unit}" if unit else level, ((level, "level"),)),) if level else (),
     )
-
-
-def made(options: type, given: Any) -> Any:
-    """Return options as their class: they come as one, as a mapping, or not at all."""
-    return given if isinstance(given, options) else options(**(given or {}))

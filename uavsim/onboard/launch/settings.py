@@ -17,9 +17,10 @@ from uavsim.onboard.launch.detector import Axis, require
 from uavsim.onboard.launch.glr import GlrSettings
 from uavsim.onboard.launch.guarded import GuardedDetector
 from uavsim.onboard.launch.inav import InavSettings
-from uavsim.onboard.launch.kinds import KINDS, OPTIONS, Kind, made
+from uavsim.onboard.launch.kinds import KINDS, OPTIONS, Kind
 from uavsim.onboard.launch.paparazzi import PaparazziSettings
 from uavsim.onboard.launch.px4 import Px4Settings
+from uavsim.registry import made
 
 
 @dataclass(frozen=True, slots=True)
