@@ -138,7 +138,7 @@ def _missed(rows: "pd.DataFrame", column: str = "pd") -> Array:
 
 def _subtitle(found: Operating) -> str:
     trials = int(found.rows["trials"].iloc[0])
-    hours = ", ".join(f"{found.rows[f'{kind}.hours'].iloc[0]:g} h {kind}" for kind in DISTURBANCES)
+    hours = ", ".join(f"{found.rows[f'{kind}.hours'].iloc[0]:.3g} h {kind}" for kind in DISTURBANCES)
     return f"{found.launches}; {trials} launches; {hours}; seed {found.seed}. Hollow: no alarm"
 
 
