@@ -84,8 +84,6 @@ def flown(
     estimator has noticed.
     """
     estimator = AidedFilter(settings, noise, (0.3, 1.3))
-    if news is not None:
-        estimator.news = news
     total = end_total = NAN
     found, told = [], False
     for k, (t, force) in enumerate(zip(true.t.tolist(), true.force.tolist(), strict=True)):
@@ -105,6 +103,8 @@ def flown(
                 t, total if heard else NAN, NAN if silent[0] <= t < silent[1] else static, KELVIN, end_total, end_static
             )
             found.append(row[:7])
+    if news is not None:
+        news += estimator.news
     return np.array(found, dtype=float)
 
 

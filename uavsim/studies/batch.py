@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 ERROR_STEP = 0.1  # s, bin of the common time axis of errors
 COURSES = 60  # flights whose courses are kept; the information of the bound is averaged over them
+APART = ("seed", "outcome", "versions", "plugins", "requirements")  # of a score: not of a row, or by another name
 ERROR_START = -1.0  # s after the true launch at which it begins
 
 Progress = Callable[[int, int], None]
@@ -192,7 +193,7 @@ def _one(scenario: Scenario, seed: int, *, position: int) -> Result:
         "outcome": flight.score["outcome"],
         "draw.release_time": draws.release_time,
         "draw.force_factor": draws.force_factor,
-        **_flat({k: v for k, v in flight.score.items() if k not in ("seed", "outcome", "versions", "requirements")}),
+        **_flat({name: value for name, value in flight.score.items() if name not in APART}),
         "requirements.met": all(r["met"] for r in flight.score["requirements"]),
     }
     unexpected = flight.score["outcome"] != flight.score["expected"]
