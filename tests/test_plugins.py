@@ -433,7 +433,21 @@ def test_the_list_names_ours_and_theirs(plugin: Path) -> None:
 # -- operating curves ------------------------------------------------------------------------------------------------
 
 
-def test_a_detector_without_a_loop_is_swept_and_tuned_all_the_same(plugin: Path, tmp_path: Path) -> None:
+def test_a_detector_without_a_loop_is_tried_and_counted_as_ours(plugin: Path) -> None:
+    from uavsim.studies.false_alarms import count
+    from uavsim.studies.operating import launches_of, tried
+
+    plugins.load([str(plugin)])
+    both = [DetectorSettings(kind="held", options={"level": 30.0}), DetectorSettings(kind="single-threshold")]
+    held, threshold = tried(both, launches_of((6.0, 0.3, True)), seed=1, trials=20)
+    assert held.detected.sum() == threshold.detected.sum() == 20
+    assert np.median(held.since_onset) < np.median(threshold.since_onset)
+    (alarms, _) = count(both, {"centrifuge": 0.1}, seed=1)["centrifuge"]
+    assert alarms.alarms > 0  # 4.1 g is above its level
+
+
+@pytest.mark.slow
+def test_a_detector_without_a_loop_has_an_operating_curve(plugin: Path, tmp_path: Path) -> None:
     out = tmp_path / "roc"
     given = ("--plugin", plugin, "--detectors", "held,cusum", "--hours", "0.05", "--trials", "20", "--cells", "2")
     curves = run("roc", *given, "--out", out)
