@@ -30,12 +30,22 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("tests/onboard/test_flight_computer.py", FLIGHTS),
     ),
     "watch": (
-        ("uavsim/onboard/airspeed/watch.py", "uavsim/onboard/airspeed/climb.py"),
-        (FLIGHTS, "tests/onboard/test_aided_equations.py", "tests/onboard/test_airspeed_monitor.py"),
+        tuple(
+            f"uavsim/onboard/airspeed/{name}.py" for name in ("watch", "climb", "ports", "frozen", "monitor", "leak")
+        ),
+        (
+            FLIGHTS,
+            *(f"tests/onboard/test_{name}.py" for name in ("aided_equations", "airspeed_rooms", "airspeed_monitor")),
+            "tests/onboard/test_airspeed_leak.py",
+        ),
     ),
     "aided filter": (
-        ("uavsim/onboard/airspeed/aided.py",),
-        (FLIGHTS, "tests/onboard/test_aided_equations.py", "tests/onboard/test_airspeed_aided.py"),
+        tuple(f"uavsim/onboard/airspeed/{name}.py" for name in ("aided", "onset", "unfolding", "air", "offset")),
+        (
+            FLIGHTS,
+            *(f"tests/onboard/test_{name}.py" for name in ("aided_equations", "airspeed_rooms", "airspeed_aided")),
+            "tests/onboard/test_airspeed_offset.py",
+        ),
     ),
     "energy model": (
         ("uavsim/onboard/airspeed/energy.py", "uavsim/onboard/airspeed/energy_model.py"),
