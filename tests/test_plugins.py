@@ -550,7 +550,9 @@ def test_an_exception_that_cannot_be_told_is_told(tmp_path: Path) -> None:
     assert flight.score["reason"].startswith("detector 'Bad' raised MuteError: it does not say what at 0.0")
 
 
-@pytest.mark.parametrize(("news", "fails"), [([(1.0, "note", "total", "own")], False), ([1], True), ("told", True)])
+@pytest.mark.parametrize(
+    ("news", "fails"), [([(1.0, "airspeed_note", "total", "own")], False), ([1], True), ("told", True)]
+)
 def test_an_estimators_news_are_events_or_a_reason(news: Any, fails: bool) -> None:
     class Tells(uavsim.onboard.airspeed.Estimator):
         def __init__(self, *given: Any) -> None:
@@ -564,8 +566,8 @@ def test_an_estimators_news_are_events_or_a_reason(news: Any, fails: bool) -> No
     flight = uavsim.fly("catapult", overrides=SHORT, estimator=Tells)
     assert (flight.score["outcome"] == "onboard_failed") is fails
     if not fails:
-        assert [e for e in flight.events if e["event"] == "note"] == [
-            {"t": 1.0, "event": "note", "channel": "total", "kind": "own"}
+        assert [e for e in flight.events if e["event"] == "airspeed_note"] == [
+            {"t": 1.0, "event": "airspeed_note", "channel": "total", "kind": "own"}
         ]
 
 

@@ -8,8 +8,8 @@ the flight computer takes it; its commands act from the plant's next step on.
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.metadata import version
 from operator import attrgetter
@@ -25,7 +25,7 @@ from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.interface import AirReading, Estimate, Reading
-from uavsim.onboard.launch.guarded import STATE
+from uavsim.onboard.launch.guarded import STATE, GuardedDetector
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import Plant, Run
 from uavsim.scenario import PLANT_STEP, Scenario, load_scenario, with_kinds
@@ -84,7 +84,7 @@ class WatchedDetector:
         self.detector = detector
         self.rows: list[tuple[Any, ...]] = []
         self._from = record_from
-        tells_all = all(hasattr(detector, name) for name in STATE)
+        tells_all = not isinstance(detector, GuardedDetector) and all(hasattr(detector, name) for name in STATE)
         self._state: Callable[[launch.Detector], Iterable[Any]] = attrgetter(*STATE) if tells_all else _told
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
@@ -214,12 +214,19 @@ class Cosimulation:
         self.air_readings: list[float] = []
         self.steps = round(scenario.duration * STEP_RATE)
         self.ended = self.reason = ""
-        self._begin()
+        with self._told():
+            self._begin()
 
     def advance(self, steps: int) -> None:
         """Fly up to `steps` plant steps; `ended` tells why it stopped early, `reason` more of it."""
-        try:
+        with self._told():
             self._advance(steps)
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        """End the flight where a part that is not ours fails."""
+        try:
+            yield
         except PartError as failure:
             self.ended, self.reason = FAILED, str(failure)
 
@@ -390,6 +397,8 @@ def replay(flight: Flight) -> Flight:
 def _flight(simulation: Cosimulation) -> Flight:
     plant, onboard = simulation.plant, simulation.onboard
     truth = plant.truth()
+    if isinstance(plant, GuardedPlant) and plant.problem and not simulation.reason:
+        simulation.ended, simulation.reason = FAILED, plant.problem
     accelerometer = frame_of_floats("accelerometer", simulation.readings)
     tables = {
         "accelerometer": accelerometer,

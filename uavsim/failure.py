@@ -31,11 +31,26 @@ def raised(part: str, t: float, error: BaseException) -> PartError:
 
 
 @contextmanager
+def blamed(part: str, t: float) -> Iterator[None]:
+    """Turn whatever a part raises at a time, s, into its failure, an attempt to end the program too."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise raised(part, t, error) from error
+
+
+@contextmanager
 def built(part: str) -> Iterator[None]:
     """Turn what making a part raises into one line; it has not flown yet, so it is the user's to mend."""
     try:
         yield
-    except Exception as error:
+    except KeyboardInterrupt:
+        raise
+    except PartError as failure:
+        raise ValueError(str(failure)) from failure
+    except BaseException as error:
         raise ValueError(f"{part} cannot be made: {said(error)}") from error
 
 

@@ -5,15 +5,17 @@ decorators here. A scenario file only names a kind: it never makes anything run 
 the command line. Entry points are read as metadata; only the package whose name is asked for is imported.
 """
 
+import dataclasses
 import hashlib
 import importlib
 import importlib.util
+import os
 import re
 import sys
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, packages_distributions, version
 from pathlib import Path
 from typing import Any, cast
@@ -21,6 +23,7 @@ from typing import Any, cast
 from sensors.choice import nearest, shown
 from uavsim import settings
 from uavsim.failure import said
+from uavsim.files import without_none
 from uavsim.onboard.airspeed.kinds import KINDS as ESTIMATORS
 from uavsim.onboard.airspeed.kinds import estimator
 from uavsim.onboard.launch.kinds import KINDS as DETECTORS
@@ -129,9 +132,17 @@ def of_class(what: str, cls: Any) -> str:
     for kind in registry.values():
         if kind.cls is cls:
             return str(kind.name)
-    name = re.sub(r"[^\w.+-]", "", str(getattr(cls, "__name__", "")))[:64] or what
+    name = re.sub(r"[^\w.+-]", "", str(getattr(cls, "__name__", "")))[:60] or what
+    if name in registry and (what, name) not in _passing:
+        name = f"{name}-2"
+    if name in registry:
+        registry.remove(name)
     DECORATORS[what](name)(cls)
+    _passing.add((what, name))
     return name
+
+
+_passing: set[tuple[str, str]] = set()  # classes that were only flown in Python; the next of that name takes the place
 
 
 def _points(group: str) -> tuple[EntryPoint, ...]:
@@ -143,6 +154,10 @@ def _import_point(registry: Registry[Any], point: EntryPoint) -> None:
     with _blamed(f"{registry.what} {point.name!r} of {_distribution(point)}"):
         found = point.load()
     if point.name in registry:
+        return
+    told = next((kind for kind in registry.values() if kind.cls is found), None)
+    if told is not None:  # by its decorator, and by another name
+        registry.add(replace(told, name=point.name))
         return
     try:
         DECORATORS[registry.what](point.name)(found)
@@ -168,7 +183,7 @@ def load(names: Iterable[str]) -> None:
     """
     for name in names:
         before = {(what, kind) for what, registry in REGISTRIES.items() for kind in registry}
-        already = name in _loaded
+        already = name in _loaded or (_is_file(name) and str(Path(name).expanduser().resolve()) in _loaded)
         with _blamed(f"--plugin {shown(name)}"):
             module = _import_file(name) if _is_file(name) else _import_module(name)
         after = {(what, kind) for what, registry in REGISTRIES.items() for kind in registry}
@@ -177,12 +192,12 @@ def load(names: Iterable[str]) -> None:
                 f"--plugin {shown(name)}: registers no detector, estimator or plant; "
                 "decorate a class with @uavsim.plugins.detector('name')"
             )
-        _loaded[name] = None
+        _loaded[str(Path(name).expanduser().resolve()) if _is_file(name) else name] = None
 
 
 def loaded() -> tuple[str, ...]:
     """Return what has been imported by `load`, so that another process can do the same; files with their whole path."""
-    return tuple(str(Path(name).expanduser().resolve()) if _is_file(name) else name for name in _loaded)
+    return tuple(_loaded)
 
 
 def _is_file(name: str) -> bool:
@@ -199,6 +214,8 @@ def _registers(module: Any) -> bool:
 
 
 def _import_module(name: str) -> Any:
+    if not all(part.isidentifier() for part in name.split(".")):
+        raise PluginError(f"--plugin {shown(name)}: is neither a file that ends in .py nor a module's name")
     if importlib.util.find_spec(name) is None:
         raise PluginError(f"--plugin {shown(name)}: there is no such module; a file ends in .py")
     return importlib.import_module(name)
@@ -207,7 +224,7 @@ def _import_module(name: str) -> Any:
 def _import_file(name: str) -> Any:
     """Import a file; the same one again is the module that it was."""
     path = Path(name).expanduser()
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise PluginError(f"--plugin {shown(name)}: there is no such file")
     if path.stat().st_size > LARGEST:
         raise PluginError(f"--plugin {shown(name)}: has more than {LARGEST} bytes")
@@ -237,12 +254,12 @@ def _blamed(where: str) -> Iterator[None]:
     """Turn whatever importing raises into one line that names it, with the file and line of the plug-in's own."""
     try:
         yield
-    except PluginError:
+    except (PluginError, KeyboardInterrupt):
         raise
-    except Exception as error:
-        raise PluginError(f"{where}: {_place(error)}{_one_line(error)}") from error
     except SystemExit as error:
         raise PluginError(f"{where}: ends the program as it is imported ({error.code})") from error
+    except BaseException as error:
+        raise PluginError(f"{where}: {_place(error)}{_one_line(error)}") from error
 
 
 def _place(error: BaseException) -> str:
@@ -254,7 +271,11 @@ def _place(error: BaseException) -> str:
 
 
 def _is_machinery(filename: str) -> bool:
-    return filename.startswith("<frozen") or Path(filename).name in ("plugins.py", "registry.py", "kinds.py")
+    """Whether a file is Python's own importing, or ours that registers."""
+    return filename.startswith(("<frozen", *_MACHINERY))
+
+
+_MACHINERY = (str(Path(__file__).parent), str(Path(importlib.__file__).parent), dataclasses.__file__)
 
 
 def _one_line(error: BaseException) -> str:
@@ -278,8 +299,11 @@ def sources(what: str) -> Iterator[Source]:
     for kind in registry.values():
         yield source_of(what, kind)
     for point in _points(registry.group):
+        told = None if point.dist is None else point.dist.version
         if point.name not in registry:
-            yield Source(registry.group, point.name, point.value, None if point.dist is None else point.dist.version)
+            yield Source(registry.group, point.name, point.value, told)
+        elif not _module(registry[point.name]).startswith(point.module):
+            yield Source(registry.group, point.name, f"{point.value} (not used: the name is taken)", told)
 
 
 def source_of(what: str, kind: Any) -> Source:
@@ -296,7 +320,21 @@ def source_of(what: str, kind: Any) -> Source:
     file = getattr(sys.modules.get(module), "__file__", None)
     if file is not None and Path(file).is_file():
         return Source(group, kind.name, Path(file).name, sha256=hashlib.sha256(Path(file).read_bytes()).hexdigest())
-    return Source(group, kind.name, module)
+    return Source(group, kind.name, module, sha256=_digest(kind.cls))
+
+
+def _digest(cls: Any) -> str | None:
+    """SHA-256 of a class's code that is in no file, as of a notebook; None if it has none."""
+    functions = [getattr(value, "fget", value) for value in vars(cls).values()] if isinstance(cls, type) else [cls]
+    codes = [function.__code__ for function in functions if hasattr(function, "__code__")]
+    told = "\n".join(sorted(map(_told, codes)))
+    return hashlib.sha256(told.encode()).hexdigest() if codes else None
+
+
+def _told(code: Any) -> str:
+    """What a function does, but for where it stands."""
+    constants = [_told(each) if hasattr(each, "co_code") else repr(each) for each in code.co_consts]
+    return f"{code.co_name} {code.co_code.hex()} {code.co_names} {constants}"
 
 
 def _module(kind: Any) -> str:
@@ -339,11 +377,15 @@ def check_options(what: str, options: type | None, given: Any) -> Any:
         if given:
             raise SettingError(f"{where}: this {what} has no options", where)
         return None
-    if isinstance(given, options):
-        given = asdict(cast(Any, given))
     try:
-        return settings.read(options, given or {})
+        if isinstance(given, options):
+            given = asdict(cast(Any, given))
+        found: Any = settings.read(options, given or {})
+        again: Any = settings.read(options, without_none(asdict(found)))
     except SettingError as error:
         raise SettingError(f"{where}: {error.problem}", where, *(f"{where}.{key}" for key in error.keys)) from None
-    except (TypeError, NameError) as error:
-        raise SettingError(f"{where}: {options.__qualname__} is no dataclass of settings: {error}", where) from None
+    except Exception as error:  # noqa: BLE001 (what somebody's declarations lead to is not known)
+        raise SettingError(f"{where}: {options.__qualname__} cannot be read: {said(error)}", where) from None
+    if again != found:
+        raise SettingError(f"{where}: {options.__qualname__} holds what a file cannot: {shown(str(found))}", where)
+    return found

@@ -64,7 +64,7 @@ class Registry(Generic[K]):
         TakenError
             If it is taken.
         """
-        if not re.fullmatch(NAME, str(kind.name)) or kind.name.endswith(".py"):
+        if not isinstance(kind.name, str) or not re.fullmatch(NAME, kind.name) or kind.name.endswith(".py"):
             raise ValueError(
                 f"{str(kind.name)[:60]!r} cannot be a {self.what}'s name: it is at most 64 letters, digits and .+-_, "
                 "does not begin with a sign nor end in .py"

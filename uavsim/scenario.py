@@ -378,7 +378,9 @@ def _with_plugins(s: Scenario) -> Scenario:
             if was is None:
                 raise SettingError(f"{key} = {error}", key) from None
             raise SettingError(
-                f"{key} = {name!r} is not registered here; it was flown with {was}; give that to --plugin", key
+                f"{key} = {name!r} is not registered here; it was flown with {was}; "
+                + ("give that file to --plugin" if was.version is None else "install that package"),
+                key,
             ) from None
         group = getattr(s, what)
         s = replace(s, **{what: replace(group, options=check_options(what, kind.options, group.options))})

@@ -79,7 +79,10 @@ def read(kind: type[T], values: Mapping[str, Any]) -> T:
         # As JSON, because pydantic's strictness then takes a list for a tuple, but neither "3" nor true for a number.
         found: T = _adapter(declared).validate_json(json.dumps(plain), strict=True)
     except ValidationError as error:
-        raise _blame(kind, plain, error.errors(include_url=False)[0]["loc"]) from None
+        first = error.errors(include_url=False)[0]
+        if not first["loc"]:  # the settings' own check
+            raise SettingError(first["msg"].removeprefix("Value error, ")) from None
+        raise _blame(kind, plain, first["loc"]) from None
     return found
 
 
@@ -224,7 +227,7 @@ def _blame(kind: Any, values: Any, path: Path) -> SettingError:
         entry = _entry(hint)
         if _is_group(hint) and part in hints(hint):
             if part not in value:
-                return SettingError(f"{key}: {part} is missing", top)
+                return SettingError(f"{key}: {part} is missing" if key else f"{part} is missing", top)
             hint, key = hints(hint)[part], f"{key}.{part}" if key else part
             top = top if "[" in key else key
         elif get_origin(hint) is dict and isinstance(value, Mapping) and part in value:

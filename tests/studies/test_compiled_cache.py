@@ -317,4 +317,4 @@ def test_a_budget_that_takes_too_long_without_the_jit_is_one_line() -> None:
     assert run.returncode == 2
     assert run.stderr.count("\n") == 1
     assert "at most 100 h are run where numba's JIT is off; 0.0671 an hour can be shown" in run.stderr
-    assert reach.tuning_told(72.0, 1000.0, reach.OFF).startswith(f"{reach.OFF}: this takes about 69 min")
+    assert reach.tuning_told(72.0, 1000.0, reach.OFF).startswith(f"{reach.OFF}: this takes about 207 min")

@@ -60,6 +60,8 @@ def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bo
         if (flight / "campaign.json").is_file():
             raise ValueError(f"{flight} holds several flights: give one of the folders in {flight / 'flights'}")
         recorded = load(flight)
+        if "recording" in recorded.scenario:
+            raise ValueError(f"{flight} is the replay of a log: replay the log itself")
         Scenario.from_dict(recorded.scenario, str(flight / "scenario.toml"))
         missing = [table for table in UNITS if table not in recorded.tables]
         if missing:

@@ -22,7 +22,7 @@ What is asked for
 """
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any, Protocol, cast
 
 Reading = tuple[float, float, float, float]
 """Specific force: t s, f_x, f_y, f_z m/s²."""
@@ -62,6 +62,13 @@ class Detector(Protocol):
         """Forget everything: ready for the first sample, whatever its time."""
 
 
+class _NoNews:
+    """An empty list for each that asks, which an attribute of an object's own takes the place of."""
+
+    def __get__(self, estimator: object, owner: type | None = None) -> News:
+        return []
+
+
 class Estimator:
     """An airspeed estimator; all but `step` may be left as it is here, where it does nothing.
 
@@ -70,6 +77,9 @@ class Estimator:
     """
 
     __slots__ = ()
+
+    news: News = cast(Any, _NoNews())
+    """What it has found of its sensors since this was last emptied; an attribute of its own where it has some."""
 
     def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
@@ -81,11 +91,6 @@ class Estimator:
     def aided(self) -> bool:
         """Whether it wants the readings of specific force: if it has an `accelerometer` of its own."""
         return type(self).accelerometer is not Estimator.accelerometer
-
-    @property
-    def news(self) -> News:
-        """What it has found of its sensors since this was last emptied; the same list all the time."""
-        return []
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take a reading of specific force.

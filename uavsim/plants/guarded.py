@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.failure import PartError, raised, shown
+from uavsim.failure import PartError, blamed, said, shown
 from uavsim.plants.plant import Commands, Plant, Run, Vector
 from uavsim.truth import UNITS
 
@@ -24,6 +24,11 @@ class GuardedPlant:
     plant : Plant
     run : Run
         What it was told.
+
+    Attributes
+    ----------
+    problem : str
+        What is wrong with its truth, once that has been asked for; empty if nothing is.
     """
 
     def __init__(self, name: str, plant: Plant, run: Run) -> None:
@@ -31,13 +36,13 @@ class GuardedPlant:
         self.k, self.t = 0, 0.0
         self.force: Vector = (0.0, 0.0, 0.0)
         self.on_rail = self.aloft = True
-        self.failure = ""
+        self.failure = self.problem = ""
         self._look()
 
     @property
     def finite(self) -> bool:
         """Whether the whole state is finite."""
-        return bool(self._asked(lambda: self._plant.finite))
+        return bool(self._asked(lambda: bool(self._plant.finite)))
 
     def step(self) -> None:
         """Advance by one step; see `Plant`."""
@@ -61,16 +66,17 @@ class GuardedPlant:
         return a, b, c, d, e, f, g
 
     def truth(self) -> dict[str, NDArray[np.float64]]:
-        """Columns of the truth; NaN where the plant has none, as after a failure that spoilt them."""
+        """Columns of the truth; NaN where the plant has none, which is a failure then (`problem`)."""
         rows = self.k + 1
+        columns = {name: np.full(rows, np.nan) for name in UNITS}
         try:
             given = dict(self._plant.truth())
-        except Exception:  # noqa: BLE001 (the flight is over; what is known of it is kept)
-            given = {}
-        columns = {name: np.full(rows, np.nan) for name in UNITS}
-        for name, column in columns.items():
-            found = np.asarray(given.get(name, np.nan), dtype=np.float64).ravel()[:rows]
-            column[: found.size] = found
+            for name, column in columns.items():
+                column[:] = np.asarray(given[name], dtype=np.float64)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # noqa: BLE001 (the flight is over; what is known of it is kept)
+            self.problem = f"{self._part} has no whole truth after {rows} rows: {said(error)}"
         columns["t"] = np.arange(rows) / self.rate
         return columns
 
@@ -81,22 +87,20 @@ class GuardedPlant:
             raise PartError(f"{self._part} is at step {k}, {t:g} s, and should be at {self.k}, {self.t:g} s")
         x, y, z = self._numbers("force", self._asked(lambda: plant.force), 3)
         self.force = x, y, z
-        self.failure = str(self._asked(lambda: getattr(plant, "failure", "")))
+        failure = self._asked(lambda: " ".join(str(getattr(plant, "failure", "")).split()))
+        if failure:
+            raise PartError(f"{self._part} has failed at {self.t:.4f} s: {failure[:300]}")
         self.on_rail, self.aloft = self._asked(lambda: (bool(plant.on_rail), bool(plant.aloft)))
 
     def _numbers(self, what: str, found: Any, count: int) -> tuple[float, ...]:
         try:
             values = tuple(map(float, found))
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             values = ()
         if len(values) != count or any(map(isinf, values)):
             raise PartError(f"{self._part} has {what} = {shown(found)} at {self.t:.4f} s; it must be {count} numbers")
         return values
 
     def _asked(self, ask: Callable[[], Any]) -> Any:
-        try:
+        with blamed(self._part, self.t):
             return ask()
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            raise raised(self._part, self.t, error) from error

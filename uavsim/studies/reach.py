@@ -14,7 +14,8 @@ from uavsim.onboard.launch.compiled import jit
 from uavsim.studies.detections import has_loop
 from uavsim.studies.false_alarms import PIECE, PIECES_AN_HOUR
 
-COST = 0.4e-6  # s a sample and detector, the mean over our kinds on one core of 2024; they take 0.1 to 0.9
+COST = 0.4e-6  # s a sample and detector of a loop in plain Python, the mean over our kinds on one core of 2024
+STEPPED = 1.2e-6  # s of a detector that is stepped: what ours take, 0.3 to 1.5, and their guard
 MOST = 1.0e9  # samples times detectors of disturbances, 7 minutes
 MOST_TRIED = 1.5e8  # samples times detectors of launches, a minute, and as many in the cells
 LAUNCH = 1.9  # s of a launch until it is decided; most of it is the wait before
@@ -42,6 +43,11 @@ def why(detectors: Iterable[DetectorSettings]) -> str:
     return f"{', '.join(names)}: without a compiled loop" if jit() else OFF
 
 
+def cost() -> float:
+    """Time that plain Python takes for a sample and detector, s."""
+    return STEPPED if jit() else COST
+
+
 def within_reach(asked: Work, *, detectors: int, compared: int, rate: float) -> Work:
     """Return what ends in about ten minutes; nothing grows, and without plain Python nothing changes.
 
@@ -56,11 +62,12 @@ def within_reach(asked: Work, *, detectors: int, compared: int, rate: float) -> 
     """
     if not detectors and not compared:
         return asked
-    pieces = int(MOST / (PIECE * rate * max(1, detectors)))
+    share = COST / cost()
+    pieces = int(MOST * share / (PIECE * rate * max(1, detectors)))
     mix = 1
     while mix + 1 + 3 * ceil((mix + 1) / 4) <= pieces:  # three classes have a quarter of the hours each
         mix += 1
-    tried = MOST_TRIED / (LAUNCH * rate)
+    tried = MOST_TRIED * share / (LAUNCH * rate)
     return Work(
         min(asked.hours, mix / PIECES_AN_HOUR),
         min(asked.trials, max(1, int(tried / max(1, detectors)))),
@@ -83,5 +90,5 @@ def told(asked: Work, done: Work, reason: str) -> str:
 
 def tuning_told(hours: float, rate: float, reason: str) -> str:
     """Say how long `tune` takes in plain Python for the hours that its budget needs, and why."""
-    minutes = COUNTED * hours * 3600.0 * rate * COST / 60.0
+    minutes = COUNTED * hours * 3600.0 * rate * cost() / 60.0
     return f"{reason}: this takes about {minutes:.0f} min, and less for a larger --false-alarms"

@@ -21,6 +21,7 @@ from uavsim.testing.hostile import Force, Row, Sample
 REST, PUSH = 3.0, 60.0  # m/s²; of a rail, and of a launch that every detector recognises
 DETECTOR_RECOVERY = 3.0  # s; a mean on the rail that was spoilt is used for 1.5, and a new one takes two blocks of 0.5
 STEPS = 20_000  # readings between two looks at the memory
+KEPT = (list, dict, set, deque, bytearray)  # what a class of somebody's may hold for all its objects
 LOOSE = 50  # things that may be held more than before: a gap more, a reading more
 
 
@@ -52,6 +53,7 @@ def footprint(thing: Any) -> int:
         else:
             names = [name for kind in type(held).__mro__ for name in getattr(kind, "__slots__", ())]
             stack += [getattr(held, name) for name in names if hasattr(held, name)]
+            stack += [each for kind in type(held).__mro__ for each in vars(kind).values() if isinstance(each, KEPT)]
             stack += vars(held).values() if hasattr(held, "__dict__") else []
     return count
 

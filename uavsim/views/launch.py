@@ -11,7 +11,7 @@ from uavsim.onboard.launch.kinds import Window
 from uavsim.onboard.launch.settings import if_known
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views.figure import BLACK, BLUE, GREY, RAW, RED, SKY, label, legend, sheet
-from uavsim.views.launch_sum import draw_panels, read_again
+from uavsim.views.launch_sum import draw_panels, panels_of, read_again
 from uavsim.views.marks import flag_all
 from uavsim.views.record import CROSSING_G, Array, Record, Stretch, known
 
@@ -32,19 +32,19 @@ def draw(record: Record) -> "Figure | None":
     if not record.scenario.plant.chosen.launches:
         return None
     kind, origin = if_known(record.scenario.detector), record.start
-    windows = record.has("detector") and kind.window is not None
-    heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else tuple(panel.height for panel in kind.panels))
+    windows, panels = record.has("detector") and kind.window is not None, panels_of(kind)
+    heights = FORCE_HEIGHTS + (WINDOW_HEIGHTS if windows else tuple(panel.height for panel in panels))
     figure, axes = sheet(record.title, _words(record), heights, (1.5, 1.0), size=(11.5, 8.0))
     columns = list(zip(*axes, strict=True))
     stretches = (record.launch, _recognition(record, origin, record.launch))
-    state = read_again(record, kind.panels, record.launch[1]) if kind.panels and not windows else None
+    state = read_again(record, panels, record.launch[1]) if panels and not windows else None
     for column, stretch in zip(columns, stretches, strict=True):
         column[0].set_xlim(*(1e3 * (t - origin) for t in stretch))
         _force(column, record, stretch, origin)
         if windows and kind.window is not None:
             _draw_windows(column[2:], kind.window(record.scenario.detector), _windows(record, stretch, origin))
         elif state is not None:
-            draw_panels(column[2:], kind.panels, state, stretch, origin)
+            draw_panels(column[2:], panels, state, stretch, origin)
     named = "true launch" if record.named("true launch") else "release" if record.release is not None else "detection"
     for one in axes[-1]:
         label(one, x=f"time since {named} (t = {origin:.3f} s), ms")

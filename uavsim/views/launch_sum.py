@@ -4,14 +4,14 @@ A detector sees nothing but readings, so that the same one over the same reading
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch.kinds import Panel
-from uavsim.views.figure import BLUE, RED, label
+from uavsim.onboard.launch.kinds import Kind, Panel
+from uavsim.views.figure import BLUE, RED, label, literal
 from uavsim.views.record import Array, Record, Stretch, within
 
 if TYPE_CHECKING:
@@ -39,6 +39,16 @@ class State:
     t: Array
     columns: dict[str, Array]
     recognised: NDArray[np.bool_]
+
+
+def panels_of(kind: Kind) -> tuple[Panel, ...]:
+    """Panels that a kind asks for; the words of one that is not ours are drawn as they are written."""
+    if kind.ours:
+        return kind.panels
+    return tuple(
+        replace(panel, label=literal(panel.label), curves=tuple((literal(name), of) for name, of in panel.curves))
+        for panel in kind.panels
+    )
 
 
 def read_again(record: Record, panels: Sequence[Panel], until: float) -> State:

@@ -85,7 +85,8 @@ def _plain(value: Any) -> Any:
 
 
 def _style(found: Operating, kind: str) -> dict[str, Any]:
-    i = list(dict.fromkeys([*KINDS, *found.rows["detector"]])).index(kind)
+    drawn = list(dict.fromkeys(found.rows["detector"]))  # few have a colour each; of many each has always the same
+    i = (drawn if len(drawn) <= len(COLOURS) else list(dict.fromkeys([*KINDS, *drawn]))).index(kind)
     return {"color": COLOURS[i % len(COLOURS)], "linestyle": LINES[i // len(COLOURS) % len(LINES)]}
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from uavsim.studies.bench import Cost, OnboardCost
 
 NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
+MOST_REASONS = 3  # of flights that ended from inside, that are told
 QUANTILES = {"5 %": "p05", "median": "median", "95 %": "p95"}  # of `batch_summary`
 
 
@@ -223,7 +224,16 @@ def print_batch(flown: "Batch") -> None:
         console,
         f"False detections before release: {found['false_detections']}",
         f"Flights with a requirement that is not met: {found['requirements_unmet']}",
+        *_reasons(flown),
     )
+
+
+def _reasons(flown: "Batch") -> list[str]:
+    """Why flights ended from inside, the most frequent first."""
+    if "reason" not in flown.runs:
+        return []
+    counted = flown.runs["reason"].dropna().value_counts().head(MOST_REASONS)
+    return [f"{_flights(int(count))}: {reason}" for reason, count in counted.items()]
 
 
 def _flights(number: int) -> str:

@@ -172,7 +172,7 @@ class AidedFilter(Estimator):
         self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
         self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)
-        self.news = self.ports.news  # type: ignore[misc]  # its own list in place of none
+        self.news = self.ports.news
         self.flying = self._apart = self._either = False
         self._steps, self._read = 0, -inf
         self.time = self._t = -inf

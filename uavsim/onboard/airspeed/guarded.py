@@ -6,13 +6,16 @@ readings, whatever an estimator makes of them.
 """
 
 from math import isfinite, nan
-from typing import Any
+from numbers import Real
+from typing import Any, NoReturn
 
-from uavsim.failure import PartError, raised, shown
+from uavsim.failure import PartError, blamed, shown
 from uavsim.onboard.airspeed.paper import PaperFilter
 from uavsim.onboard.interface import Estimate, Estimator, Feel, News
 
-WHOLE = 9  # values of a whole estimate
+SHORT, WHOLE = 3, 9  # values of an answer
+BEYOND = 1e9  # of any unit: what a number of an estimate never is
+OWN = "airspeed_"  # what an estimator's events begin with
 
 
 class GuardedEstimator(Estimator):
@@ -28,24 +31,19 @@ class GuardedEstimator(Estimator):
         Reads the same, tares the pair and gives the raw airspeed.
     """
 
-    __slots__ = ("_aided", "_estimator", "_news", "_part", "_pressures", "_t")
+    __slots__ = ("_aided", "_estimator", "_part", "_pressures", "_t", "news")
 
     def __init__(self, name: str, estimator: Any, pressures: PaperFilter) -> None:
         self._part, self._estimator, self._t = f"estimator {name!r}", estimator, nan
         taken = getattr(type(estimator), "accelerometer", None)
         self._aided = taken is not None and taken is not Estimator.accelerometer
         self._pressures = pressures
-        self._news: News = []
+        self.news: News = []
 
     @property
     def aided(self) -> bool:
         """Whether it has an `accelerometer` of its own."""
         return self._aided
-
-    @property
-    def news(self) -> News:
-        """What it has found of its sensors."""
-        return self._news
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take a reading of specific force."""
@@ -70,58 +68,53 @@ class GuardedEstimator(Estimator):
 
     def _tell(self, name: str, *values: float) -> None:
         told: Feel | None = getattr(self._estimator, name, None)
-        if told is None:
-            return
-        try:
-            told(*values)
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            raise raised(self._part, self._t, error) from error
+        if told is not None:
+            with blamed(self._part, self._t):
+                told(*values)
 
     def step(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
         """Take one reading of the head; see `Estimator`."""
         self._t = t
-        try:
+        with blamed(self._part, self._t):
             answer = self._estimator.step(t, p_total, p_static, temperature, t_total, t_static)
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            raise raised(self._part, t, error) from error
         self._collect()
         read = self._pressures.step(t, p_total, p_static, temperature, t_total, t_static)
         if answer is None:
             return None
+        values = _numbers(answer)
         total, static, nis = p_total - self._pressures.tare()[0], p_static, (nan, nan)
-        try:
-            if len(answer) == WHOLE:
-                _, speed, sd, _, total, static, valid, *nis_ = map(float, answer)
-                nis = nis_[0], nis_[1]
-            else:
-                speed, sd, valid = map(float, answer)
-        except (TypeError, ValueError, OverflowError):
-            raise PartError(
-                f"{self._part} answered {shown(answer)} at {t:.4f} s; it must be None, (airspeed, sd, valid) or a "
-                "whole estimate"
-            ) from None
+        if len(values) == WHOLE:
+            _, speed, sd, _, total, static, valid, *both = values
+            nis = both[0], both[1]
+        elif len(values) == SHORT:
+            speed, sd, valid = values
+        else:
+            self._refuse(answer, "it must be None, (airspeed, sd, valid) or a whole estimate")
         self._check(answer, speed, sd, valid)
+        if any(abs(value) > BEYOND for value in (speed, sd, total, static, *nis)):
+            self._refuse(answer, f"no number of it is beyond {BEYOND:g}")
         return t, speed, sd, nan if read is None else read[3], total, static, valid == 1.0, nis[0], nis[1]
 
     def _collect(self) -> None:
         """Take over its news, and empty them."""
-        told = getattr(self._estimator, "news", None)
-        if not told:
-            return
+        with blamed(self._part, self._t):
+            told = getattr(self._estimator, "news", None)
+            if told is None or (isinstance(told, list) and not told):
+                return
         try:
-            news = [(float(t), str(event), str(channel), str(kind)) for t, event, channel, kind in told]
+            news = [(float(t), event, channel, kind) for t, event, channel, kind in told]
+            right = all(isfinite(t) and all(isinstance(word, str) for word in words) for t, *words in news)
             told.clear()
-        except (TypeError, ValueError, AttributeError):
+        except (TypeError, ValueError, AttributeError, OverflowError):
+            right = False
+        if not right or not all(event.startswith(OWN) for _, event, _, _ in news):
             raise PartError(
-                f"{self._part} has news {shown(told)} at {self._t:.4f} s; it is a list of (t, event, channel, kind)"
-            ) from None
-        self._news += news
+                f"{self._part} has news {shown(told)} at {self._t:.4f} s; it is a list of (t, event, channel, kind), "
+                f"whose events begin with {OWN!r}"
+            )
+        self.news += news
 
     def _check(self, answer: Any, speed: float, sd: float, valid: float) -> None:
         if valid not in (0.0, 1.0):
@@ -134,4 +127,19 @@ class GuardedEstimator(Estimator):
             wrong = "neither airspeed nor standard deviation is below 0"
         else:
             return
+        self._refuse(answer, wrong)
+
+    def _refuse(self, answer: Any, wrong: str) -> NoReturn:
         raise PartError(f"{self._part} answered {shown(answer)} at {self._t:.4f} s; {wrong}")
+
+
+def _numbers(answer: Any) -> tuple[float, ...]:
+    """Return an answer's values; none if it is no row of numbers and flags."""
+    if not isinstance(answer, tuple | list):
+        return ()
+    if not all(isinstance(value, Real) or type(value).__name__ in ("bool", "bool_") for value in answer):
+        return ()
+    try:
+        return tuple(map(float, answer))
+    except (TypeError, ValueError, OverflowError):
+        return ()

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Any
 
-from uavsim.failure import PartError, raised, shown
+from uavsim.failure import PartError, blamed, shown
 from uavsim.onboard.interface import Detector
 
 STATE = ("level", "count", "total", "triggered")
@@ -31,32 +31,22 @@ class GuardedDetector:
             return self._detector.loop  # type: ignore[attr-defined]  # if it has one
         if name not in STATE:
             raise AttributeError(name)
-        try:
-            value = getattr(self._detector, name)
+        with blamed(f"{self._part}, attribute {name!r},", self._t):
+            value = getattr(self._detector, name, None)
             return value if value is None else bool(value) if name == "triggered" else float(value)
-        except AttributeError:
-            raise
-        except Exception as error:
-            raise raised(f"{self._part}, attribute {name!r}", self._t, error) from error
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
         """Take one sample; see `Detector`."""
         self._t = t
-        try:
-            answer = self._detector.step(t, fx, fy, fz)
-            seen = bool(answer)
-            right = seen == answer
-        except KeyboardInterrupt:
-            raise
-        except BaseException as error:
-            raise raised(self._part, t, error) from error
-        if not right or answer is None:
+        with blamed(self._part, self._t):
+            answer: Any = self._detector.step(t, fx, fy, fz)
+        if isinstance(answer, bool):
+            return answer
+        if type(answer).__name__ not in ("bool", "bool_", "int") or answer not in (0, 1):  # numpy's are two
             raise PartError(f"{self._part} answered {shown(answer)} at {t:.4f} s; it must be True or False")
-        return seen
+        return bool(answer)
 
     def reset(self) -> None:
         """Forget everything; see `Detector`."""
-        try:
+        with blamed(self._part, self._t):
             self._detector.reset()
-        except Exception as error:
-            raise raised(self._part, self._t, error) from error

@@ -255,6 +255,10 @@ def detector(name: str, *, level: str = "", unit: str = "") -> Callable[[C], C]:
     return register
 
 
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 def kind_of(cls: type, name: str, *, level: str = "", unit: str = "") -> Kind:
     """Return the kind that a class is, without registering it.
 
@@ -269,7 +273,7 @@ def kind_of(cls: type, name: str, *, level: str = "", unit: str = "") -> Kind:
         if not callable(getattr(cls, method, None)):
             raise NoDetectorError(f"detector {name!r}: {getattr(cls, '__name__', cls)} has no method {method!r}")
     options = own_settings(cls, f"detector {name!r}")
-    names = {f.name for f in fields(options)} if options is not None else set()
+    swept = options is not None and any(f.name == "level" and _is_number(f.default) for f in fields(options))
     return Kind(
         name=name,
         cls=cls,
@@ -278,6 +282,6 @@ def kind_of(cls: type, name: str, *, level: str = "", unit: str = "") -> Kind:
         options=options,
         watches=level,
         unit=unit,
-        level=Level(f"{OPTIONS}.level", unit) if "level" in names else None,
-        panels=(Panel(f"{level}, {unit}" if unit else level, ((level, "level"),)),) if level else (),
+        level=Level(f"{OPTIONS}.level", unit) if swept else None,
+        panels=(Panel(unit or "level", ((level[:28], "level"),)),) if level else (),
     )
