@@ -1,13 +1,11 @@
-"""Where a sensor sits and how it is turned: rigid-body kinematics.
-
-    f_p = f + ω' × r + ω × (ω × r)        specific force at r from the point where it is f, body axes
+"""How a sensor is turned: rigid-body kinematics.
 
     z = Rᵀ f,   R = R_z(ψ) R_y(θ) R_x(φ)  what the axes of a case read that has the attitude roll φ, pitch θ, yaw ψ
 
 R turns components in the case into components in the body: its columns are the case's axes. Right angles are exact:
 their sines and cosines are -1, 0 and 1.
 
-Source: Titterton & Weston, "Strapdown Inertial Navigation Technology", ch. 3.6 (attitude), ch. 2 (moving frames).
+Source: Titterton & Weston, "Strapdown Inertial Navigation Technology", ch. 3.6 (attitude).
 """
 
 from collections.abc import Callable
@@ -56,32 +54,10 @@ def linear(matrix: Matrix) -> Callable[[float, float, float], Triple] | None:
     return multiply
 
 
-def lever_arm(force: Triple, rate: Triple, angular_acceleration: Triple, arm: Triple) -> Triple:
-    """Return the specific force at a point of a rigid body.
-
-    Parameters
-    ----------
-    force : (x, y, z)
-        Specific force at the point of reference, m/s².
-    rate, angular_acceleration : (x, y, z)
-        Of the body against inertial space, rad/s and rad/s².
-    arm : (x, y, z)
-        From the point of reference, m. All components are in the same body axes.
-    """
-    fx, fy, fz = force
-    ex, ey, ez = _cross(angular_acceleration, arm)
-    cx, cy, cz = _cross(rate, _cross(rate, arm))
-    return fx + ex + cx, fy + ey + cy, fz + ez + cz
-
-
 def _cosine_and_sine(angle_deg: float) -> tuple[float, float]:
     if angle_deg % 90.0 == 0.0:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(angle_deg // 90.0) % 4]
     return cos(radians(angle_deg)), sin(radians(angle_deg))
-
-
-def _cross(a: Triple, b: Triple) -> Triple:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def _dot(a: Triple, b: Triple) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from uavsim import consistency
-from uavsim.consistency import autocorrelation, by_phase, coverage, judge, ljung_box, mean_band, nees
+from uavsim.consistency import autocorrelation, coverage, judge, ljung_box, mean_band, nees
 
 
 def test_band_is_chi_square():
@@ -85,11 +85,3 @@ def test_missing_values_and_no_claim_are_left_out():
     empty = judge(np.full(3, math.nan), np.ones(3))
     assert math.isnan(empty.nees)
     assert empty.samples == 0
-
-
-def test_by_phase():
-    phase = np.array(["stroke"] * 3 + ["cruise"] * 2)
-    found = by_phase(phase, np.array([[2.0, 2.0, 2.0, 1.0, 1.0]]), np.ones((1, 5)), np.ones((1, 5, 2)).mean(axis=2))
-    assert list(found) == ["stroke", "cruise"]
-    assert (found["stroke"].nees, found["cruise"].nees) == (4.0, 1.0)
-    assert found["cruise"].coverage == (1.0, 1.0, 1.0)

@@ -584,3 +584,182 @@ def test_a_part_that_raises_ends_the_operating_curve_with_a_line(tmp_path: Path)
     refused = run("roc", *given, cwd=tmp_path)
     assert refused.returncode == 2
     assert refused.stderr == "Error: detector 'held' raised ZeroDivisionError: division by zero at 0.0000 s\n"
+
+
+class Divided:
+    """A level that is a share of what has not been counted yet."""
+
+    level = property(lambda self: 1 / self.count)
+    count = total = 0
+    triggered = False
+
+    def __init__(self, rate: float) -> None: ...
+
+    def reset(self) -> None: ...
+
+    def step(self, *_: float) -> bool:
+        return False
+
+
+def _with(**attributes: Any) -> type:
+    return type("Odd", (Divided,), {"level": 0.0, **attributes})
+
+
+@pytest.mark.parametrize(
+    ("cls", "says"),
+    [
+        (Divided, r"detector 'Divided', attribute 'level', raised ZeroDivisionError: division by zero at 1\.5"),
+        (_with(level="high"), "attribute 'level', raised ValueError"),
+        (_with(count=1j), "attribute 'count', raised TypeError"),
+        (_with(total=10**400), "attribute 'total', raised OverflowError"),
+        (_with(triggered=property(lambda self: sys.exit(0))), "attribute 'triggered', raised SystemExit"),
+        (_with(step=lambda self, *_: 1 + 0j), r"answered \(1\+0j\) at 0\.0"),
+        (_with(step=lambda self, *_: np.array([True])), r"answered array\(\[ True\]\) at 0\.0"),
+    ],
+)
+def test_a_state_that_is_none_ends_the_flight(cls: type, says: str) -> None:
+    import re
+
+    flight = uavsim.fly("catapult", overrides=SHORT, detector=cls)
+    assert flight.score["outcome"] == "onboard_failed"
+    assert re.search(says, flight.score["reason"]), flight.score["reason"]
+
+
+@pytest.mark.parametrize("raises", ["import sys; sys.exit(0)", "raise GeneratorExit", "1 / 0", "raise KeyError"])
+def test_a_part_that_cannot_be_made_is_one_line(raises: str, tmp_path: Path) -> None:
+    code = PLUGIN.replace("        self.settings = settings\n", f"        {raises}\n")
+    (tmp_path / "bad.py").write_text(code, encoding="utf-8")
+    refused = run("fly", "--plugin", "bad.py", *settings("detector.kind=held"), cwd=tmp_path)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr.startswith("Error: ")
+    assert "detector 'held' cannot be made: " in refused.stderr
+    assert refused.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "answer", [(10**400, 1.0, True), ("20", "1", "1"), "201", (1e300, 1.0, False), (20.0, 1.0, True, 3.0), [None] * 9]
+)
+def test_an_answer_that_is_none_ends_the_flight(answer: Any) -> None:
+    flight = uavsim.fly("catapult", overrides=SHORT, estimator=_estimator(lambda self, *_: answer))
+    assert flight.score["outcome"] == "onboard_failed"
+    assert "estimator 'Bad' answered " in flight.score["reason"]
+
+
+def test_news_may_be_a_list_of_its_own_that_is_replaced() -> None:
+    class Tells(uavsim.onboard.airspeed.Estimator):
+        def __init__(self, *given: Any) -> None:
+            self.news = []
+
+        def step(self, t: float, *reading: float) -> Any:
+            if 1.0 < t < 1.02:
+                self.news = [*self.news, (t, "airspeed_note", "total", "")]
+            return 20.0, 5.0, True
+
+    flight = uavsim.fly("catapult", overrides=SHORT, estimator=Tells)
+    assert [e["channel"] for e in flight.events if e["event"] == "airspeed_note"] == ["total"]
+    assert uavsim.onboard.airspeed.Estimator().news == []
+
+
+@pytest.mark.parametrize(
+    ("method", "value", "says"),
+    [
+        ("truth", lambda self: 1 / 0, "has no whole truth after .* rows: ZeroDivisionError"),
+        ("truth", lambda self: None, "has no whole truth"),
+        ("truth", lambda self: {"t": np.zeros(3)}, "has no whole truth"),
+        ("flow", lambda self: (1.0, 2.0), r"has flow = \(1\.0, 2\.0\)"),
+        ("failure", "the arm\ncame off", "has failed at 0.0000 s: the arm came off"),
+        ("finite", property(lambda self: np.array([1, 2])), "raised ValueError"),
+    ],
+)
+def test_a_plants_nonsense_ends_the_flight_or_is_refused(method: str, value: Any, says: str) -> None:
+    import re
+
+    odd = type("Odd", (Bench,), {method: value})
+    overrides = (*SHORT, "expect=completed", "air_data.static_port.error=0.02")
+    try:
+        flight = uavsim.fly("catapult", overrides=overrides, plant=odd)
+        assert flight.score["outcome"] == "onboard_failed"
+        told = flight.score["reason"]
+    except ValueError as error:  # before it flew
+        told = str(error)
+    assert re.search(says, told), told
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("x: object = object()", "cannot be read|must be|holds what a file cannot"),
+        ("x: float = float('nan')", "detector.options: "),
+        ("x: Annotated[float, Interval(ge=2.0)] = 1.0", r"x = 1\.0: must be a number of at least 2"),
+        ("x: 'Unknown' = 1.0", "cannot be read"),
+        ("x: int", "detector.options: x is missing"),
+    ],
+)
+def test_settings_that_a_file_cannot_hold_are_refused_before_they_fly(body: str, says: str, tmp_path: Path) -> None:
+    code = PLUGIN.replace(
+        "        hold: float = 0.010\n        names: tuple[str, ...] = ()\n", "        hold: float = 0.01\n"
+    )
+    code = code.replace("        level: Annotated", f"        {body}\n        level: Annotated")
+    (tmp_path / "odd.py").write_text(code.replace("settings=Settings()", "settings"), encoding="utf-8")
+    plugins.load([str(tmp_path / "odd.py")])
+    with pytest.raises(ValueError, match=says) as caught:
+        load_scenario("catapult", overrides=["detector.kind=held"])
+    assert "\n" not in str(caught.value)
+
+
+def test_settings_may_check_themselves() -> None:
+    @dataclass(frozen=True)
+    class Own:
+        low: float = 1.0
+        high: float = 2.0
+
+        def __post_init__(self) -> None:
+            if self.low > self.high:
+                raise ValueError("low is above high")
+
+    odd = _detector(lambda self, *_: False)
+    odd.Settings = Own  # type: ignore[attr-defined]
+    plugins.detector("own")(odd)
+    with pytest.raises(ValueError, match=r"^--set: detector\.options: low is above high$"):
+        load_scenario("catapult", overrides=["detector.kind=own", "detector.options.low=3"])
+
+
+def test_an_entry_point_by_another_name_keeps_what_the_decorator_says(
+    installed: SimpleNamespace, tmp_path: Path
+) -> None:
+    info = installed.folder / "good_package-1.4.dist-info"
+    points = "[uavsim.detectors]\nother = good_package.parts:Held\npx4 = good_package.parts:Held\n"
+    (info / "entry_points.txt").write_text(points)
+    kind = find("detector", "other")
+    assert (kind.watches, kind.unit) == ("f_x over level", "m/s²")
+    assert find("detector", "px4").ours
+    listed = [s for s in plugins.sources("detector") if s.name == "px4"]
+    assert [s.source for s in listed][1:] == ["good_package.parts:Held (not used: the name is taken)"]
+
+
+def test_the_code_of_a_class_without_a_file_is_known_by_its_hash() -> None:
+    def made(level: float) -> Any:
+        names: dict[str, Any] = {"__name__": "__nowhere__"}
+        exec(
+            "class Cell:\n def __init__(self, rate): pass\n def reset(self): pass\n"
+            f" def step(self, t, fx, fy, fz): return fx > {level}\n",
+            names,
+        )
+        return names["Cell"]
+
+    one, other, again = (
+        uavsim.fly("catapult", overrides=SHORT, detector=made(level)).score["plugins"][0]["sha256"]
+        for level in (40.0, 41.0, 40.0)
+    )
+    assert one == again != other
+
+
+def test_what_is_written_to_the_terminal_by_others_is_not_in_the_document(tmp_path: Path) -> None:
+    loud = PLUGIN.replace("        self.settings = settings\n", "        self.settings = settings\n        loud()\n")
+    loud += "\n\ndef loud():\n    import os\n    os.write(1, b'by number')\n    os.system('echo by a process')\n"
+    (tmp_path / "loud.py").write_text(loud, encoding="utf-8")
+    given = ("fly", "--plugin", "loud.py", *settings("detector.kind=held"), "--no-plots", "--json")
+    flown = run(*given, cwd=tmp_path)
+    assert json.loads(flown.stdout)["score"]["launch"]["detector"] == "held"
+    assert "by number" in flown.stderr
+    assert "by a process" in flown.stderr

@@ -164,32 +164,3 @@ def judge(error: Array, sd: Array, nis: Array | None = None, innovations: Array 
         coverage=coverage(np.atleast_2d(error), np.atleast_2d(sd)),
         white=float(np.mean(passed)) if passed else np.nan,
     )
-
-
-def by_phase(
-    phase: NDArray[np.str_], error: Array, sd: Array, nis: Array | None = None, innovations: Array | None = None
-) -> dict[str, Consistency]:
-    """Judge each phase by itself.
-
-    Parameters
-    ----------
-    phase : ndarray
-        Shape (n,): name of the phase at each time.
-    error, sd, nis, innovations : ndarray
-        As of `judge`, with times along the last axis, n long each.
-
-    Returns
-    -------
-    dict
-        A `Consistency` for each name, in order of appearance.
-    """
-    found = {}
-    for name in dict.fromkeys(phase.tolist()):
-        part = phase == name
-        found[str(name)] = judge(
-            error[..., part],
-            sd[..., part],
-            None if nis is None else nis[..., part],
-            None if innovations is None else innovations[..., part],
-        )
-    return found

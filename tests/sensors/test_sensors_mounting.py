@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from sensors.mounting import IDENTITY, attitude, lever_arm, linear, product, transposed
+from sensors.mounting import IDENTITY, attitude, linear, product, transposed
 
 G0 = 9.80665
 ANGLES = st.floats(-360.0, 360.0)
@@ -58,55 +58,3 @@ def test_the_identity_is_nothing_to_do():
 
 
 # -- lever arm -----------------------------------------------------------------------------------------------------
-
-
-def test_constant_spin_pulls_outwards_with_the_square_of_the_rate():
-    """A sensor 0.3 m ahead on a body that yaws at 5 rad/s feels -ω² r: the support pulls it towards the axis."""
-    assert lever_arm((0, 0, -G0), (0, 0, 5.0), (0, 0, 0), (0.3, 0, 0)) == pytest.approx((-7.5, 0, -G0), abs=1e-12)
-
-
-def test_spin_up_pushes_across():
-    """At rest, at 20 rad/s² about z, a sensor 0.3 m ahead is accelerated to the right with r dω/dt."""
-    assert lever_arm((0, 0, 0), (0, 0, 0), (0, 0, 20.0), (0.3, 0, 0)) == pytest.approx((0, 6.0, 0), abs=1e-12)
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_lever_arm_against_the_position_of_a_point_of_a_tumbling_body(seed):
-    """Authority: second derivative of p(t) = p_0(t) + R(t) r, by central differences of fourth order (1e-5 m/s²).
-
-    The body turns about all axes with an attitude that is a smooth function of time; its rate and acceleration come
-    from R(t) by differences as well, so no formula of rotating frames is used on that side. Gravity points down.
-    """
-    rng = np.random.default_rng(seed)
-    amplitude, frequency, phase = rng.uniform(0.2, 1.2, 3), rng.uniform(0.5, 2.0, 3), rng.uniform(0, 6, 3)
-    arm, gravity = rng.uniform(-0.5, 0.5, 3), np.array([0, 0, G0])
-
-    def turned(t):
-        yaw, pitch, roll = amplitude * np.sin(2 * np.pi * frequency * t + phase)
-        return Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix()
-
-    def reference(t):
-        return np.array([3 * t**2, np.sin(4 * t), -0.5 * t**3])
-
-    def second(function, t, h=2e-3):
-        return (-function(t + 2 * h) + 16 * function(t + h) - 30 * function(t) + 16 * function(t - h)
-                - function(t - 2 * h)) / (12 * h * h)  # fmt: skip
-
-    def first(function, t, h=2e-3):
-        return (-function(t + 2 * h) + 8 * function(t + h) - 8 * function(t - h) + function(t - 2 * h)) / (12 * h)
-
-    def rate(t):  # body axes: Rᵀ dR/dt is the cross-product matrix of ω
-        spin = turned(t).T @ first(turned, t)
-        return np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
-
-    t, to_body = 0.7, turned(0.7).T
-    force = to_body @ (second(reference, t) - gravity)
-    expected = to_body @ (second(lambda s: reference(s) + turned(s) @ arm, t) - gravity)
-    got = lever_arm(tuple(force), tuple(rate(t)), tuple(first(rate, t)), tuple(arm))
-    assert got == pytest.approx(tuple(expected), abs=2e-5)
-    assert np.linalg.norm(expected - force) > 1.0  # the arm matters
-
-
-@given(VECTORS, VECTORS, VECTORS)
-def test_nothing_is_felt_of_the_arm_at_the_reference_point(force, rate, acceleration):
-    assert lever_arm(force, rate, acceleration, (0.0, 0.0, 0.0)) == force

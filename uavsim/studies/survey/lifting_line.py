@@ -71,11 +71,6 @@ class LiftingLine:
         """Angle of attack of the section at y, rad, over its own downwash; `upwash`, rad, comes from elsewhere."""
         return alpha + upwash - self.downwash_slope(y) * (alpha - self.zero_lift)
 
-    def lift_slope(self) -> float:
-        """Lift-curve slope of the wing, 1/rad: π·AR·A₁."""
-        area = 0.5 * self.span * (self.root_chord + self.tip_chord)
-        return float(np.pi * self.span**2 / area * self._terms[1][0])
-
     @cached_property
     def _horseshoes(self) -> tuple[Array, Array, Array]:
         """Left and right end of each, m, and its Γ/U per rad of α − α₀, m."""
