@@ -116,6 +116,8 @@ def test_turbulence_is_that_of_the_specification() -> None:
     assert sd == pytest.approx(1.5 / 0.3416**0.4, rel=1e-9)
     assert length == pytest.approx(200.0 / 0.3416**1.2 * 0.3048, rel=1e-9)
     assert turbulence(15.0, 0.0) == turbulence(15.0, 3.048)
+    assert turbulence(15.0, 900.0) == pytest.approx(turbulence(15.0, 304.8))
+    assert turbulence(15.0, 300.0) != pytest.approx(turbulence(15.0, 304.8), rel=1e-3)
 
 
 def test_declared_turbulence_is_believed_and_none_changes_nothing() -> None:

@@ -164,8 +164,19 @@ def test_crossing_is_above_four_and_a_half_g() -> None:
     assert score(weak)["launch"]["latency_from_crossing"] is None
     above = made(change=holding(setting("fx", 2.0, 0.0), setting("fx", 44.14, 2.3)))
     assert above.crossing_time == pytest.approx(2.3)
+    assert made(change=setting("fx", 4.4 * STANDARD_GRAVITY, 0.0)).crossing_time is None
     knocked = made(change=setting("fx", 60.0, 1.0, 1.05))
     assert knocked.crossing_time == pytest.approx(RELEASE + 0.021)
+
+
+def test_a_launch_that_is_recognised_at_the_last_moment_is_not_missed() -> None:
+    """0.5 s after the last shoe has left, to the bit; a millisecond later it is missed."""
+    exit_time = made().rail_exit_time
+    assert exit_time is not None
+    others = tuple(event for event in EVENTS if event[0] != "launch_detected")
+    at = made(events=(("launch_detected", exit_time + 0.5), *others))
+    late = made(events=(("launch_detected", exit_time + 0.501), *others))
+    assert (outcome(at) != "missed_launch", outcome(late)) == (True, "missed_launch")
 
 
 def test_detections_before_release_are_false_and_never_the_detection() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from uavsim import airdata
+from uavsim.onboard import flight_computer
 from uavsim.onboard.flight_computer import LONGEST_STEP, FlightComputer, FlightComputerSettings
 from uavsim.onboard.interface import Estimate, Estimator
 from uavsim.onboard.launch import MultiLevelWindow
@@ -622,3 +623,44 @@ def test_a_knock_then_a_launch_with_the_detector_that_flies() -> None:
     times = [e["t"] for e in box.events]
     assert times[0] == pytest.approx(1.017)
     assert times[3] == pytest.approx(4.017)
+
+
+def test_what_is_waited_for_is_as_far_away_after_a_step_of_the_clock() -> None:
+    """Between the stroke's end and the wings the clock jumps by 100 s; the wings are late by the readings it takes."""
+    usual = events(launched())
+    box = computer(2.02)
+    feed(box, REST, 0.0, 2.0)
+    feed(box, 8.0 * G, 2.0, 2.4)
+    feed(box, -1.0, 2.4, usual["stroke_end"] + 0.05)
+    assert box.state == "coasting"
+    for k in range(1000):
+        box.accelerometer(100.0 + usual["stroke_end"] + 0.05 + 0.001 * k, -1.0, 0.0, -9.6)
+    waited = events(box)["wings_commanded"] - 100.0 - usual["stroke_end"]
+    assert waited == pytest.approx(SETTINGS.wing_delay, abs=0.010)
+
+
+def test_a_step_of_the_clock_while_nothing_is_waited_for_is_none() -> None:
+    box = computer(102.02)
+    feed(box, REST, 0.0, 1.0)
+    feed(box, REST, 100.0, 102.0)
+    feed(box, 8.0 * G, 102.0, 102.4)
+    feed(box, -1.0, 102.4, 104.0)
+    assert events(box)["stroke_end"] == pytest.approx(100.0 + events(launched())["stroke_end"], abs=1.5e-3)
+
+
+def test_before_the_first_block_the_mean_on_the_rail_is_nothing() -> None:
+    """A push 0.2 s after switching on, when no mean over 0.5 s is there: the speed gained holds g sin θ, 0.8 m/s."""
+    box = computer(0.22)
+    feed(box, REST, 0.0, 0.2)
+    feed(box, 8.0 * G, 0.2, 0.6)
+    feed(box, -1.0, 0.6, 2.0)
+    (end,) = [e for e in box.events if e["event"] == "stroke_end"]
+    assert end["speed_gain"] == pytest.approx(8.0 * G * 0.38, abs=0.3)
+
+
+def test_so_many_events_are_kept_and_no_fewer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(flight_computer, "MOST_EVENTS", 3)
+    box = computer()
+    for t in range(5):
+        box._note(float(t), "note")
+    assert [e["t"] for e in box.events] == [2.0, 3.0, 4.0]

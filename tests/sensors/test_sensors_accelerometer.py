@@ -447,6 +447,14 @@ def test_offset_and_scale_follow_the_dies_temperature():
         assert reading(kelvin) == pytest.approx(expected, abs=2 * FINE)
 
 
+def test_a_part_whose_offset_alone_follows_the_temperature_is_warmed():
+    """0.1, 0.2, 0.3 (m/s²)/K, 10 K above 25 °C, and a scale that does not change."""
+    air = Air(lambda: REFERENCE_TEMPERATURE + 10.0)
+    part = replace(TC, scale_tc_sd=0.0)
+    readings = _fly(Accelerometer(part, Streams(5), unit="typical", surroundings=air), lambda t: FORCE, 0.01)
+    assert readings[0, 1:] == pytest.approx(np.array(FORCE) + np.array([1.0, 2.0, 3.0]), abs=2 * FINE)
+
+
 def test_without_an_air_temperature_it_is_25_degrees():
     assert _fly(Accelerometer(TC, Streams(5), unit="typical"), lambda t: FORCE, 3.0)[-1, 1:] == pytest.approx(
         FORCE, abs=FINE
