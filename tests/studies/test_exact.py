@@ -499,3 +499,16 @@ def test_no_count_is_no_sequence() -> None:
 def test_onset_outside_of_the_curve_is_refused() -> None:
     with pytest.raises(ValueError, match="20 samples"):
         exact.hold(np.zeros(20), 0.0, threshold=1.0, samples=2).latency(20)
+
+
+@pytest.mark.parametrize("ratio", [0.0, -0.1, 1.1])
+def test_a_share_that_is_none_is_refused_by_every_window(ratio: float) -> None:
+    one = {"threshold": 1.0, "samples": 3, "ratio": ratio}
+    for refused in (
+        lambda: exact.multi_level_window([1.0], 1.0, levels=2, **one),
+        lambda: exact.threshold_window([1.0], 1.0, **one),
+        lambda: exact.sequence_window([1.0], 1.0, sequence=1, **one),
+        lambda: exact.sliding_window([1.0], 1.0, **one),
+    ):
+        with pytest.raises(ValueError, match="ratio must be above 0 and at most 1"):
+            refused()
