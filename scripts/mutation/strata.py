@@ -78,6 +78,9 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
                 *("px4", "ardupilot", "inav", "paparazzi", "altos", "autopilot"),
             )
         ),
-        ("tests/studies/test_detections.py", "tests/onboard/test_launch.py", "tests/onboard/test_launch_time.py"),
+        (
+            "tests/studies/test_detections.py",
+            *(f"tests/onboard/test_launch{name}.py" for name in ("", "_time", "_rivals", "_field", "_adaptive_cusum")),
+        ),
     ),
 }
