@@ -512,3 +512,30 @@ def test_a_share_that_is_none_is_refused_by_every_window(ratio: float) -> None:
     ):
         with pytest.raises(ValueError, match="ratio must be above 0 and at most 1"):
             refused()
+
+
+def test_a_long_sliding_window_with_one_miss_allowed() -> None:
+    """39 of the last 40, by the places of the last two misses alone: recognised when the second last has left."""
+    n, above, length = 40, 0.97, 90
+    found = exact.sliding_window([above_as_curve(above)] * length, 1.0, threshold=0.0, samples=n, ratio=39.0 / n)
+    waiting, passage = {(0, 1): 1.0}, []  # how long ago the last two misses were; before the first sample all are
+    for _ in range(length):
+        after: dict[tuple[int, int], float] = {}
+        passed = 0.0
+        for (last, second), mass in waiting.items():
+            if second + 1 >= n:
+                passed += above * mass
+            else:
+                after[last + 1, second + 1] = after.get((last + 1, second + 1), 0.0) + above * mass
+            after[0, last + 1] = after.get((0, last + 1), 0.0) + (1.0 - above) * mass
+        waiting = after
+        passage.append(passed)
+    assert found.mass.sum(axis=1) == pytest.approx(passage, rel=1e-9, abs=1e-15)
+    assert 0.3 < sum(passage) < 0.99
+
+
+def above_as_curve(probability: float) -> float:
+    """Mean, in standard deviations above the threshold, that is exceeded with this probability."""
+    from scipy.special import ndtri
+
+    return float(ndtri(probability))
