@@ -763,3 +763,18 @@ def test_what_is_written_to_the_terminal_by_others_is_not_in_the_document(tmp_pa
     assert json.loads(flown.stdout)["score"]["launch"]["detector"] == "held"
     assert "by number" in flown.stderr
     assert "by a process" in flown.stderr
+
+
+def test_what_is_hashed_is_what_runs_and_nothing_is_left_beside_it(plugin: Path) -> None:
+    """Not the code that Python kept of an earlier version, of the same size and second."""
+    plugins.load([str(plugin)])
+    plugin.write_text(
+        PLUGIN.replace(
+            "level: Annotated[float, Interval(gt=0.0, le=500.0)] = 40.0",
+            "level: Annotated[float, Interval(gt=0.0, le=500.0)] = 41.0",
+        ),
+        encoding="utf-8",
+    )
+    plugins.load([str(plugin)])
+    assert Scenario.from_dict({"detector": {"kind": "held"}}).detector.options.level == 41.0
+    assert [file.name for file in plugin.parent.iterdir()] == ["mine.py"]
