@@ -474,3 +474,17 @@ def test_temperature_widens_the_error_bar():
     )
     share = plain[1] * 0.5 / (2.0 * KELVIN)
     assert doubted[2] == pytest.approx(math.hypot(plain[2], share), rel=1e-9)
+
+
+def test_a_replay_that_fails_leaves_the_pressures_and_says_when(monkeypatch):
+    """What has been kept of before the launch cannot be filtered: flagged at the detection, by both channels."""
+    estimator = AidedFilter(SETTINGS, NOISE, COVERED)
+    fly(estimator, readings(until=2.0, noise=1.2))
+
+    def fails(*row):
+        raise ArithmeticError
+
+    monkeypatch.setattr(type(estimator), "_fly", fails)
+    estimator.launched(DETECTED)
+    assert estimator.news == [(DETECTED, "airspeed_fault", "both", "diverged")]
+    assert not estimator.flying

@@ -664,3 +664,22 @@ def test_so_many_events_are_kept_and_no_fewer(monkeypatch: pytest.MonkeyPatch) -
     for t in range(5):
         box._note(float(t), "note")
     assert [e["t"] for e in box.events] == [2.0, 3.0, 4.0]
+
+
+@pytest.mark.parametrize("axis", ["+x", "-x", "+y", "-y", "+z", "-z"])
+def test_the_stroke_ends_along_the_launch_axis_whatever_its_sign(axis: Any) -> None:
+    """The same push along each axis gives the same events; on the others a force that has no end."""
+    box = FlightComputer(SETTINGS, Spotter(2.02), Oracle(), RATE, axis=axis)
+    place, sign = "xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0
+    for k in range(round(4.0 * RATE)):
+        t = k / RATE
+        force = [44.0, 44.0, 44.0]
+        force[place] = sign * (REST if t < 2.0 else 50.0 if t < 2.4 else -1.0)
+        box.accelerometer(t, *force)
+    assert events(box)["stroke_end"] == pytest.approx(events(launched())["stroke_end"], abs=0.003)
+
+
+def test_a_safe_throttle_is_all_that_there_is_at_the_most() -> None:
+    box = computer(throttle_climb=50.0)
+    assert box._safe(0.5) == 1.0
+    assert box._safe(-0.5) == 0.0

@@ -218,3 +218,26 @@ def test_keys_of_a_rule_reach_it(kind, key, value):
         for detector in (build(changed, RATE), REGISTERED[kind].cls(RATE, **{key: value}), make(kind))
     )
     assert built == bare != usual != []
+
+
+@pytest.mark.parametrize("far", [3.0, 1000.0])
+def test_counters_of_several_axes_leave_out_one_stamp_far_ahead(far):
+    """The next sample follows the one before it, so decisions are those without the stray one."""
+    levels = {"trigger": 47.0, "threshold": 43.0, "samples": 4, "levels": 3, "ratio": 0.75}
+    record = [(k / RATE, 50.0 if k >= 300 else 2.0, 0.0, -9.6) for k in range(400)]
+    stray = [*record[:299], (record[298][0] + far, 50.0, 0.0, -9.6), *record[299:]]
+    plain = decisions(MultiLevelWindow(**levels, axes=("+x", "-z"), period=1.0 / RATE), record)
+    found = decisions(MultiLevelWindow(**levels, axes=("+x", "-z"), period=1.0 / RATE), stray)
+    assert plain
+    assert [stray[k] for k in found] == [record[k] for k in plain]
+
+
+@pytest.mark.parametrize("kind", WINDOWS)
+def test_what_a_window_shows_is_nothing_again_after_a_quiet_second(kind):
+    detector = make(kind)
+    shown = set()
+    for k in range(1200):
+        assert not detector.step(k / RATE, 46.0 if 100 <= k < 103 else 2.0, 0.0, -9.6)
+        shown.add((detector.level, detector.count, detector.total, detector.triggered))
+    assert len(shown) > 1
+    assert (detector.level, detector.count, detector.total, detector.triggered) == (0, 0, 0, False)

@@ -272,3 +272,29 @@ def test_flow_is_the_recorded_air(catapult: JsbsimPlant) -> None:
     assert (total, static, temperature) == pytest.approx(catapult.air(catapult.t), rel=1e-12)
     names = ("mach", "alpha", "beta", "throttle")
     assert (mach, alpha, beta, throttle) == tuple(truth[name][-1] for name in names)
+
+
+def test_a_centre_of_gravity_that_moves_in_the_body_is_felt() -> None:
+    """2 ω × r' + r'' of the accelerometer seen from it, every component away from zero."""
+    plant = JsbsimPlant(Run(EnvironmentSettings(), LauncherSettings(), 0.01, RELEASE))
+    velocity, change, rates = np.array([0.3, 0.5, -0.9]), np.array([40.0, -25.0, 60.0]), (1.1, -0.7, 0.4)
+    times = -plant.dt * np.arange(4)
+    now, *past = (tuple(velocity * t + 0.5 * change * t * t) for t in times)
+    plant._offsets = (past[0], past[1], past[2])
+    felt = plant._with_moving_cg((1.0, 2.0, 3.0), now, rates)
+    assert felt == pytest.approx(np.array([1.0, 2.0, 3.0]) + 2.0 * np.cross(rates, velocity) + change, abs=1e-6)
+    assert not plant._still
+    still = []
+    for _ in range(2):
+        plant._with_moving_cg((1.0, 2.0, 3.0), now, rates)
+        still.append(plant._still)
+    assert still == [False, True]
+
+
+def test_one_number_that_is_none_is_a_state_that_is_none() -> None:
+    plant = JsbsimPlant(Run(EnvironmentSettings(), LauncherSettings(), 0.01, RELEASE))
+    assert plant.finite
+    sound = plant.row
+    for k in (0, len(sound) // 2, len(sound) - 1):
+        plant.row = (*sound[:k], np.inf, *sound[k + 1 :])
+        assert not plant.finite

@@ -376,3 +376,22 @@ def test_every_tube_is_stable(length, diameter, volume):
     assert lag > 0.0
     assert inertia > 0.0
     assert exp(-lag) < 1.0
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_plug_of_water_weighs_along_its_tube(axis):
+    """5 mm in a tube along each axis of the body: ρ_w a l of the force along it, none of the others."""
+    direction = tuple(-1.0 if k == axis else 0.0 for k in range(3))
+    force = (80.0, -30.0, 20.0)
+    wet = _run(_line(PIPE, (PortFault("water", water_length=0.005),), direction), 3000, force=force)[-1]
+    dry = _run(_line(PIPE, (), direction), 3000, force=force)[-1]
+    assert wet - dry == pytest.approx(5.0 * force[axis], rel=1e-6)
+
+
+def test_a_leaking_line_is_well_again_after_one_pressure_that_is_none():
+    """The volume forgets what was no number as soon as its tube's end is one."""
+    line = _line(BARE, (PortFault("leak", time_constant=0.05),))
+    sound = _run(_line(BARE, (PortFault("leak", time_constant=0.05),)), 2000)
+    out = _run(line, 2000, port=lambda t: np.nan if abs(t - 0.5) < DT / 2 else 1e5)
+    assert np.flatnonzero(np.isnan(out)).tolist() == [500]
+    assert out[-1] == pytest.approx(sound[-1], abs=1e-6)

@@ -295,6 +295,9 @@ def test_membrane_feels_along_its_normal_only():
     assert {float(np.sign(value)) for value in along} == {-1.0, 1.0}
     assert PressureSensor(part, Streams(1), unit="ideal").acceleration == (0.0, 0.0, 0.0)
     assert PressureSensor(part, Streams(1), unit="typical").acceleration == (0.0, 0.0, 0.2)
+    assert (
+        PressureSensor(part, Streams(7)).acceleration == PressureSensor(part, Streams(7), normal=(0, 0, 1)).acceleration
+    )
     with pytest.raises(ValueError, match="normal of a membrane"):
         PressureSensor(part, Streams(1), normal=(0.0, 0.0, 0.0))
 

@@ -539,3 +539,11 @@ def above_as_curve(probability: float) -> float:
     from scipy.special import ndtri
 
     return float(ndtri(probability))
+
+
+def test_no_quantile_beyond_all() -> None:
+    delay = exact.Recognition(np.array([[0.0], [0.4], [0.6]]), 0.5).latency(0)
+    assert delay.quantile(1.0) == 1.0
+    for share in (0.0, 1.05):
+        with pytest.raises(ValueError, match="share must be above 0 and at most 1"):
+            delay.quantile(share)
