@@ -11,7 +11,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 
 import mutants  # noqa: E402
 from mutation.changes import Mutant, mutants_of  # noqa: E402
-from mutation.report import explanations, table  # noqa: E402
+from mutation.report import explanations, reason, table  # noqa: E402
 from mutation.strata import STRATA  # noqa: E402
 from mutation.trial import Result  # noqa: E402
 
@@ -113,10 +113,22 @@ def test_a_file_that_has_moved_is_named(monkeypatch: pytest.MonkeyPatch) -> None
     assert "uavsim/plants/gone.py of the stratum 'rail' does not exist" in mutants.missing(["rail"])
 
 
-def test_an_explanation_is_of_a_file_that_there_is_and_gives_a_reason() -> None:
-    files = {file for files, _ in STRATA.values() for file in files}
-    assert {file for file, _ in explanations()} <= files
-    assert all(len(why) > 20 for why in explanations().values())
+def test_every_explanation_is_of_a_mutant_that_there_is() -> None:
+    """One whose line has changed goes, or speaks of the new one; a reason is a sentence."""
+    for row in explanations():
+        source = (ROOT / row["file"]).read_text(encoding="utf-8")
+        lines = source.splitlines()
+        found = [m for m in mutants_of(row["file"], source) if m.what == row["change"]]
+        found = [m for m in found if row.get("line", lines[m.line - 1].strip()) == lines[m.line - 1].strip()]
+        assert found, row
+        assert len(row["why"]) > 20
+        assert all(reason(m) for m in found)
+
+
+def test_a_mutant_that_reads_the_same_on_another_line_is_not_explained() -> None:
+    source = (ROOT / "sensors" / "pressure.py").read_text(encoding="utf-8")
+    same = [m for m in mutants_of("sensors/pressure.py", source) if m.what == "1.0  →  (2.0)"]
+    assert {reason(m) is None for m in same} == {True, False}
 
 
 def test_counts_and_the_interval_of_the_share() -> None:

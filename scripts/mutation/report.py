@@ -3,16 +3,24 @@
 import sys
 import tomllib
 
+from mutation.changes import Mutant
 from mutation.strata import ROOT
 from mutation.trial import Result
 
 EXPLAINED = ROOT / "scripts" / "mutation" / "explained.toml"
 
 
-def explanations() -> dict[tuple[str, str], str]:
-    """Return why mutants that no test sees are none, by file and change."""
-    rows = tomllib.loads(EXPLAINED.read_text(encoding="utf-8")).get("mutant", [])
-    return {(row["file"], row["change"]): row["why"] for row in rows}
+def explanations() -> list[dict[str, str]]:
+    """Return why mutants live that no test sees: file, change and why; the line, too, where others read the same."""
+    rows: list[dict[str, str]] = tomllib.loads(EXPLAINED.read_text(encoding="utf-8"))["mutant"]
+    return rows
+
+
+def reason(mutant: Mutant) -> str | None:
+    """Return why no test sees a mutant, None if it is not explained."""
+    line = (ROOT / mutant.file).read_text(encoding="utf-8").splitlines()[mutant.line - 1].strip()
+    fitting = (r for r in explanations() if (r["file"], r["change"]) == (mutant.file, mutant.what))
+    return next((r["why"] for r in fitting if r.get("line", line) == line), None)
 
 
 def share(killed: int, of: int) -> str:
@@ -37,9 +45,8 @@ def table(results: list[Result]) -> str:
 
 def survivors(results: list[Result]) -> str:
     """Return those alive, with what is known of them."""
-    known, lines = explanations(), []
+    lines = []
     for r in sorted((r for r in results if not r.killed), key=lambda r: (r.mutant.file, r.mutant.line)):
         lines.append(f"{r.mutant.file}:{r.mutant.line}  {r.mutant.kind}  {r.mutant.what}")
-        why = known.get((r.mutant.file, r.mutant.what))
-        lines.append(f"    {why}" if why else "    not explained")
+        lines.append(f"    {reason(r.mutant) or 'not explained'}")
     return "\n".join(lines)
