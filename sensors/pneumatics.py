@@ -404,5 +404,5 @@ def steady_until(faults: tuple[PortFault, ...], t: float) -> float:
     """Return the time up to which the condition is that of time `t`, s; ice that is growing changes it always."""
     if any(f.kind == "ice" and f.start <= t < min(f.start + f.duration, f.stop) for f in faults):
         return t
-    edges = [edge for f in faults for edge in (f.start, f.start + f.duration, f.stop) if edge > t]
+    edges = [edge for f in faults for edge in (f.start, f.stop) if edge > t]
     return min(edges, default=inf)

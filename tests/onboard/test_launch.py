@@ -358,8 +358,9 @@ def test_settings_validate_and_build():
     ):
         with pytest.raises(pydantic.ValidationError):
             adapter.validate_python(wrong)
-    with pytest.raises(ValueError, match="trigger must not be below"):
-        launch.build(DetectorSettings(kind="multi-level-window", trigger=40.0), 1000.0)
+    for kind in ("multi-level-window", "double-threshold"):
+        with pytest.raises(ValueError, match="trigger must not be below"):
+            launch.build(DetectorSettings(kind=kind, trigger=40.0), 1000.0)
     with pytest.raises(ValueError, match="rate"):
         launch.build(DetectorSettings(), 0.0)
 
@@ -385,3 +386,14 @@ def test_settings_that_are_no_counts_or_no_numbers_are_refused(wrong, says):
     right = {"trigger": 45.0, "threshold": 45.0, "samples": 10, "levels": 4, "ratio": 0.8}
     with pytest.raises(ValueError, match=says):
         launch.MultiLevelWindow(**{**right, **wrong})
+
+
+@pytest.mark.parametrize("kind", launch.KINDS)
+def test_what_is_tuned_beside_the_level_is_a_setting_and_some_values_for_it(kind):
+    settings = DetectorSettings(kind=kind)
+    second = launch.KINDS[kind].second_of(settings)
+    if second is not None:
+        group, _, key = second.key.rpartition(".")
+        assert hasattr(getattr(settings, group) if group else settings, key)
+        assert len(second.values) > 1
+        assert all(isinstance(value, (int, float)) for value in second.values)

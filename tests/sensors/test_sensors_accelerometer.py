@@ -19,6 +19,7 @@ from sensors import (
     Streams,
     Vibration,
     VibrationSettings,
+    accelerometer,
     noise,
     preset,
     presets,
@@ -820,3 +821,11 @@ def test_from_settings_takes_what_a_scenario_chooses():
     assert device.rate_error == 0.01
     reading = _fly(device, lambda t: (10.0, 0.0, -G0), 0.05)[-1, 1:]
     assert reading == pytest.approx([1.0, -10.0 + 2.0, -G0 + 3.0 + 5.0], abs=1e-6)
+
+
+def test_no_delay_is_longer_than_the_widest(monkeypatch):
+    """At 1.5 standard deviations one in 15 is cut off there, and one in 40 would be below 0."""
+    monkeypatch.setattr(accelerometer, "WIDEST_DELAY", 1.5)
+    found = np.array(list(islice(accelerometer._delays(2e-3, 1e-3, np.random.default_rng(5)), 20_000)))
+    assert (found.min(), found.max()) == pytest.approx((0.0, 3.5e-3), abs=1e-15)
+    assert np.mean(found == found.max()) == pytest.approx(0.0668, abs=0.009)  # 5 sd of a share of 20 000

@@ -15,11 +15,13 @@ from scipy.signal import cont2discrete
 
 from sensors.pneumatics import (
     GAS_CONSTANT,
+    STANDARD,
     Line,
     SecondOrder,
     bergh_tijdeman,
     laminar_lag,
     second_order,
+    steady_until,
     viscosity,
 )
 from sensors.settings import PortFault, TubeSettings
@@ -395,3 +397,19 @@ def test_a_leaking_line_is_well_again_after_one_pressure_that_is_none():
     out = _run(line, 2000, port=lambda t: np.nan if abs(t - 0.5) < DT / 2 else 1e5)
     assert np.flatnonzero(np.isnan(out)).tolist() == [500]
     assert out[-1] == pytest.approx(sound[-1], abs=1e-6)
+
+
+@pytest.mark.parametrize("air", [(1e5, np.nan), (np.nan, 288.0), (np.inf, 288.0), (1e5, 0.0), (0.0, 288.0)])
+def test_a_tube_in_no_air_is_that_of_the_standard_air(air):
+    """A pressure or a temperature alone that is no number of an air is enough."""
+    pressure, temperature = air
+    line = Line(PIPE, AFT, (), DT, pressure=pressure, temperature=temperature)
+    standard = Line(PIPE, AFT, (), DT, **STANDARD)
+    step = {"port": lambda t: 1e5 + 500.0 * (t > 0.01)}
+    assert (_run(line, 200, **step) == _run(standard, 200, **step)).all()
+
+
+def test_a_condition_lasts_until_it_changes():
+    ice, leak = PortFault("ice", start=1.0, stop=9.0, duration=2.0), PortFault("leak", start=4.0, time_constant=0.1)
+    for t, until in ((0.5, 1.0), (1.0, 1.0), (2.9, 2.9), (3.0, 4.0), (5.0, 9.0), (9.0, 3600.0)):
+        assert steady_until((ice, leak), t) == until
