@@ -683,3 +683,23 @@ def test_a_safe_throttle_is_all_that_there_is_at_the_most() -> None:
     box = computer(throttle_climb=50.0)
     assert box._safe(0.5) == 1.0
     assert box._safe(-0.5) == 0.0
+    assert box._safe(math.radians(SETTINGS.level_pitch_deg)) == pytest.approx(SETTINGS.safe_throttle)
+
+
+def test_what_can_wait_is_done_at_the_reading_after_one_of_the_head() -> None:
+    class Tidy(Oracle):
+        aided = True  # type: ignore[assignment]
+
+        def accelerometer(self, *reading: float) -> None:
+            self.told.append(("force", reading[0]))
+
+        def tidy(self) -> None:
+            self.told.append(("tidy", NAN))
+
+    estimator = Tidy()
+    estimator.next = (0.01, 0.0, 1.0, 0.0, 101_325.0, 101_325.0, True, NAN, NAN)
+    box = FlightComputer(SETTINGS, Spotter(), estimator, RATE)
+    box.air_data(0.01, 101_325.0, 101_325.0, 288.15, 0.01, 0.01)
+    for k in range(11, 14):
+        box.accelerometer(0.001 * k, REST, 0.0, -9.6)
+    assert [what for what, _ in estimator.told] == ["force", "tidy", "force", "force"]

@@ -298,3 +298,20 @@ def test_one_number_that_is_none_is_a_state_that_is_none() -> None:
     for k in (0, len(sound) // 2, len(sound) - 1):
         plant.row = (*sound[:k], np.inf, *sound[k + 1 :])
         assert not plant.finite
+
+
+@pytest.mark.parametrize("axis", [0, 2])
+def test_a_centre_of_gravity_that_has_begun_to_move_is_followed(axis: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forward or down alone: what is felt is worked out with its motion from the first step on, and not before."""
+    plant = JsbsimPlant(Run(EnvironmentSettings(), LauncherSettings(), 0.01, RELEASE))
+    plant.step()
+    asked: list[int] = []
+    monkeypatch.setattr(JsbsimPlant, "_with_moving_cg", lambda self, felt, *_: asked.append(1) or felt)
+    plant._felt(plant.row)
+    assert plant._still
+    assert not asked
+    now, *past = plant._offsets
+    moved = tuple(value + 1e-4 * (k == axis) for k, value in enumerate(now))
+    plant._offsets = (moved, *past)
+    plant._felt(plant.row)
+    assert asked

@@ -547,3 +547,11 @@ def test_no_quantile_beyond_all() -> None:
     for share in (0.0, 1.05):
         with pytest.raises(ValueError, match="share must be above 0 and at most 1"):
             delay.quantile(share)
+
+
+def test_a_curve_or_a_noise_with_one_value_that_is_none_is_refused() -> None:
+    for wrong in (np.nan, np.inf):
+        with pytest.raises(ValueError, match="finite"):
+            exact.exceedance([50.0, wrong, 40.0], 1.0, 45.0)
+        with pytest.raises(ValueError, match="sigma must be finite"):
+            exact.exceedance([50.0, 46.0, 40.0], [1.0, wrong, 2.0], 45.0)
