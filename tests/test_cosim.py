@@ -214,6 +214,14 @@ def test_replay_of_its_own_readings_gives_the_flight(way: str, tmp_path: Path) -
         assert (first / name).read_bytes() == (again / name).read_bytes()
 
 
+def test_replay_of_a_flight_that_was_ended_says_how_it_ended() -> None:
+    """Its truth alone does not tell: it stops, and no crash is in it."""
+    heavy = "aircraft.properties.inertia/pointmass-weight-lbs=1e6"
+    flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", heavy])
+    assert flight.score["outcome"] == "diverged"
+    assert replay(flight).score == flight.score
+
+
 def test_replay_needs_no_truth(launch: Flight) -> None:
     """Onboard is fed by readings alone: with another truth beside them its events and estimates are the same."""
     truth = launch.truth.copy()

@@ -18,6 +18,7 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
             "tests/test_cosim.py::test_the_same_seed_is_the_same_flight_twice_in_one_process",
             "tests/test_cosim.py::test_replay_of_its_own_readings_gives_the_flight",
             "tests/test_cosim.py::test_replay_needs_no_truth",
+            "tests/test_cosim.py::test_replay_of_a_flight_that_was_ended_says_how_it_ended",
             "tests/test_cosim.py::test_replay_hands_on_the_readings_in_the_order_of_the_flight",
             "tests/test_cosim.py::test_readings_reach_onboard_in_the_order_of_their_time_stamps",
             "tests/test_cosim.py::test_commands_act_after_the_reading_that_caused_them",
