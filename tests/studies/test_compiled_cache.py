@@ -16,8 +16,9 @@ import numba
 import pandas as pd
 import pytest
 
-from uavsim.onboard.launch import KINDS, DetectorSettings, machine_code
-from uavsim.onboard.launch.compiled import compiled, jit
+from uavsim import machine_code
+from uavsim.compiled import compiled, jit
+from uavsim.onboard.launch import KINDS, DetectorSettings
 from uavsim.studies import reach
 
 pytestmark = pytest.mark.skipif(not jit(), reason="NUMBA_DISABLE_JIT is set")

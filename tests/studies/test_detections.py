@@ -182,7 +182,7 @@ def test_every_kind_has_a_kernel() -> None:
 
 def test_without_a_place_for_machine_code_it_is_compiled_all_the_same() -> None:
     """A function without a file has none, as one in an installation that nobody may write to."""
-    from uavsim.onboard.launch.compiled import compiled
+    from uavsim.compiled import compiled
 
     names: dict[str, object] = {}
     exec("def double(x):\n    return 2 * x", names)

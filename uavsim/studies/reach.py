@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import ceil
 
+from uavsim.compiled import jit
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.onboard.launch.compiled import jit
 from uavsim.studies.detections import has_loop
 from uavsim.studies.false_alarms import PIECE, PIECES_AN_HOUR
 

@@ -22,8 +22,8 @@ from typing import Any
 
 import numpy as np
 
+from uavsim.compiled import jit
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.onboard.launch.compiled import jit
 from uavsim.onboard.launch.kinds import FORCE, Second
 from uavsim.onboard.launch.settings import get, kind_of
 from uavsim.scenario import Scenario

@@ -32,7 +32,7 @@ def spread(
     An interrupt, or what a part raises, ends it: parts that have not begun are left out, those that have are waited
     for.
     """
-    from uavsim.onboard.launch.compiled import jit
+    from uavsim.compiled import jit
 
     if not jit():  # threads of plain Python wait for each other, and keep an interrupt waiting
         return _one_by_one(parts, progress)

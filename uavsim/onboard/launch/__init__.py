@@ -34,7 +34,7 @@ from uavsim.onboard.launch.detector import GAP_PERIODS, Axis
 from uavsim.onboard.launch.kinds import KINDS, Kind, detector
 from uavsim.onboard.launch.settings import DetectorSettings, build, default
 
-NOT_KINDS = {"machine_code", "compiled"}  # what a kind's file need not bring with it
+NOT_KINDS = {"compiled"}  # what a kind's file need not bring with it
 
 for _module in iter_modules(__path__):
     if _module.name not in NOT_KINDS:

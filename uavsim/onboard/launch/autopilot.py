@@ -16,8 +16,8 @@ of each; ArduPilot's level is what its manual gives for throws and bungees.
 from math import isfinite, nan
 from typing import TYPE_CHECKING
 
+from uavsim.compiled import compiled
 from uavsim.onboard.launch.axis import OneAxis
-from uavsim.onboard.launch.compiled import compiled
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
 from uavsim.onboard.launch.kinds import Need
 from uavsim.onboard.plausible import MOST_FORCE

@@ -4,9 +4,9 @@ What is kept is read again as a pickle, and whoever writes a pickle says what is
 nobody can write into it but the user, root, and, beside the module, those who can write the module itself. A folder
 that everybody may write is never used. The first that serves is taken:
 
-    NUMBA_CACHE_DIR/launch_…                   if that is set
+    NUMBA_CACHE_DIR/FOLDER_…                   if that is set; FOLDER: that of the module
     __pycache__                                beside the module
-    uavsim/compiled/launch_…                   in the user's cache, made for the user alone
+    uavsim/compiled/FOLDER_…                   in the user's cache, made for the user alone
 
 Every file begins with the SHA-256 of what follows, an index with numba's version before it. A file that is cut,
 damaged, unreadable or of another version counts as none: the loop is compiled anew. That a file cannot be written is no
