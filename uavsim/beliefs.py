@@ -6,21 +6,23 @@ estimator: this module alone copies them from the one into the other. What no de
 * A membrane's sensitivity has been calibrated, with an error that is a share of what is usual for the part.
 * An aircraft is never faster than four times the airspeed that it is to hold; a rig is as fast as sound, and what is
   felt on it is bounded by the part alone.
-* Turbulence as MIL-F-8785C has it at low altitude, h and lengths in feet: σ_w = 0.1 W₂₀,
-  σ_u = σ_w/(0.177 + 0.000823 h)^0.4, L_u = h/(0.177 + 0.000823 h)^1.2; it is flown through at the height of cruise.
+* The turbulence is that which the environment declares (`uavsim.plants.air`), at the height of cruise, along the flight
+  path: of the wind's axes, u where the rail points along the wind and v where it points across.
+* So is the humidity of the air.
 """
 
 from dataclasses import replace
-from math import hypot
+from math import cos, hypot, radians, sin
 
 from sensors import HeadKnowledge, Streams, known_of_accelerometer, known_of_head, membranes
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
+from uavsim.plants.air.dryden import FOOT, LOWEST, deviations, lengths
+from uavsim.plants.air.settings import EnvironmentSettings
+from uavsim.plants.air.weather import at_ground
 from uavsim.scenario import MismatchSettings, Scenario
 
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
-FOOT = 0.3048  # m, ISO 80000-3
-LOWEST, HIGHEST = 10.0, 1000.0  # ft, between which the law of low altitude holds
 
 
 def calibrated(scenario: Scenario, streams: Streams) -> tuple[float, float]:
@@ -72,11 +74,13 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
 
 
 def believed_air(scenario: Scenario) -> EstimatorSettings:
-    """Return the estimator's settings with the turbulence that the environment declares, and the aircraft's bound."""
-    settings = _bounded(scenario)
+    """Return the estimator's settings with turbulence and humidity as the environment has them, and all bounds."""
+    settings, belief = _bounded(scenario), scenario.mismatch
+    if settings.vapour_fraction is None:
+        settings = replace(settings, vapour_fraction=belief.humidity * at_ground(scenario.environment).vapour_fraction)
     height = max(scenario.flight_computer.height, LOWEST * FOOT)
-    sd, length = turbulence(scenario.environment.turbulence_wind_20ft, height)
-    sd *= scenario.mismatch.gust
+    sd, length = turbulence(scenario.environment, height, scenario.launcher.heading_deg)
+    sd *= belief.gust
     if not sd > 0.0:
         return settings
     return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length, gust_height=height))
@@ -93,19 +97,25 @@ def _bounded(scenario: Scenario) -> EstimatorSettings:
     return replace(settings, fastest=fastest, aided=aided)
 
 
-def turbulence(wind_20ft: float, height: float) -> tuple[float, float]:
-    """Standard deviation, m/s, and length, m, of the longitudinal turbulence at a height above ground.
+def turbulence(environment: EnvironmentSettings, height: float, heading_deg: float) -> tuple[float, float]:
+    """Standard deviation, m/s, and length, m, of the turbulence along the flight path, as of a first-order process.
+
+    What counts over a few readings is how fast it wanders, 2 σ²/L. Of u the process is of first order, L = L_u; v
+    wanders by 3 σ²/L_v, with L_v that of MIL-F-8785C.
 
     Parameters
     ----------
-    wind_20ft : float
-        Wind speed at 20 ft, m/s.
+    environment : EnvironmentSettings
     height : float
-        m.
+        Above the ground, m.
+    heading_deg : float
+        Of the flight path.
     """
-    feet = min(max(height / FOOT, LOWEST), HIGHEST)
-    shape = 0.177 + 0.000823 * feet
-    return 0.1 * wind_20ft / shape**0.4, feet / shape**1.2 * FOOT
+    sd, _ = deviations(environment.turbulence_wind_20ft, height)
+    along, across, _ = lengths("mil-f-8785c", height)
+    angle = radians(heading_deg - environment.wind_from_deg)
+    density = 2.0 * cos(angle) ** 2 / along + 3.0 * sin(angle) ** 2 / across
+    return sd, 2.0 / density
 
 
 def _acceleration(

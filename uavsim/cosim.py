@@ -26,6 +26,7 @@ from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
+from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import Plant, Run
 from uavsim.scenario import PLANT_STEP, Scenario, load_scenario, with_kinds
@@ -284,6 +285,14 @@ class Cosimulation:
             rows = rows[1:]
         return rows
 
+    @property
+    def remarks(self) -> list[str]:
+        """What of plant and air deserves a word, a line each; at the end there may be more of it."""
+        said = list(getattr(self.plant, "remarks", ()))
+        if not self.scenario.plant.chosen.flies and moves(self.scenario.environment):
+            said.append(f"plant.kind = {self.scenario.plant.kind!r} is a rig: wind, turbulence and gusts do not reach it")
+        return said
+
     def finish(self) -> Flight:
         """Turn what was recorded into a flight with its score."""
         return _flight(self)
@@ -390,8 +399,8 @@ def replay(flight: Flight) -> Flight:
     tables = {name: tables[name] for name in flight.tables}
     ended = flight.score.get("outcome", "")
     judged = Judged(scenario, tables, onboard.computer.events, draws.release_time, ended, _versions())
-    reason = {"reason": flight.score["reason"]} if "reason" in flight.score else {}
-    return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged) | reason)
+    kept = {name: flight.score[name] for name in ("reason", "remarks") if name in flight.score}
+    return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged) | kept)
 
 
 def _flight(simulation: Cosimulation) -> Flight:
@@ -415,7 +424,7 @@ def _flight(simulation: Cosimulation) -> Flight:
         _versions(),
     )
     reason = simulation.reason or plant.failure
-    result = score(judged) | ({"reason": reason} if reason else {})
+    result = score(judged) | ({"reason": reason} if reason else {}) | {"remarks": simulation.remarks}
     record = frame("truth", {**truth, "phase": judged.phases()})
     return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)
 

@@ -28,6 +28,7 @@ from uavsim.onboard.flight_computer import STANDARD_GRAVITY, FlightComputerSetti
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.onboard.launch.kinds import Need
 from uavsim.onboard.launch.settings import kind_of, unread
+from uavsim.plants.air.weather import PRESETS
 from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
 from uavsim.plants.choice import PlantSettings
@@ -48,6 +49,7 @@ Outcome = Literal[
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
 OPTIONS = ("detector.options.", "estimator.options.", "plant.options.")  # keys that a plug-in declares
+WEATHER = "environment.preset"
 PLANT_STEP = 1e-3  # s
 MOST_READINGS = 6_000_000  # of one sensor in a flight, which take 1.4 GB and a minute
 NAME = r"(?!.*[\u115f\u1160\u3164\uffa0])[^\W_][\w .+-]{0,99}"  # without the letters of Unicode that have no ink
@@ -102,6 +104,8 @@ class MismatchSettings:
         Factor on the age of a reading of specific force at its time stamp.
     gust : float
         Factor on the standard deviation of the turbulence that the environment declares.
+    humidity : float
+        Factor on the share of vapour in the air.
     """
 
     total_noise: Belief = 1.0
@@ -117,6 +121,7 @@ class MismatchSettings:
     accelerometer_offset: Belief = 1.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     gust: Belief = 1.0
+    humidity: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,6 +316,9 @@ def _apply(values: dict[str, Any], override: str) -> str:
         group = group.setdefault(part, {})
         if not isinstance(group, dict):
             raise SettingError(f"--set {shown(override)}: {part} is a value, not a group")
+    if key == WEATHER:  # a weather that is asked for comes before what the file says of the same
+        for name in PRESETS[text].keys if text in PRESETS else ():
+            group.pop(name, None)
     value = _value(text)
     is_text = declared and settings.hint_of(Scenario, key) is str
     group[last] = text if is_text and not isinstance(value, str) else value
@@ -337,13 +345,26 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
     SettingError
         On the first thing that is wrong.
     """
+    values = _with_weather(values)
     scenario = _with_plugins(_with_inputs(settings.read(Scenario, values), values))
     for check in (
-        _check_name, _check_properties, _check_times, _check_sensors, _check_cost, _check_vibration,
+        _check_name, _check_properties, _check_times, _check_air, _check_sensors, _check_cost, _check_vibration,
         _check_directions, _check_faults, _check_detector,
     ):  # fmt: skip
         check(scenario)
     return scenario
+
+
+def _with_weather(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The same with what a weather says by its name, where nothing else is said."""
+    name = inputs.value_of(values, WEATHER)
+    if not isinstance(name, str) or not name:
+        return values
+    if name not in PRESETS:
+        near = nearest(name, PRESETS)
+        hint = f"did you mean {near!r}? " if near else ""
+        raise SettingError(f"{WEATHER} = {shown(name)}: is unknown; {hint}there are {', '.join(PRESETS)}", WEATHER)
+    return {**values, "environment": {**PRESETS[name].keys, **values["environment"]}}
 
 
 def _check_name(s: Scenario) -> None:
@@ -469,6 +490,18 @@ def _check_times(s: Scenario) -> None:
             "air_data.cover_off",
             "launcher.wait_min",
             "air_data.tare",
+        )
+
+
+def _check_air(s: Scenario) -> None:
+    """Refuse a law of wind that has none at the launcher."""
+    air, height = s.environment, s.launcher.height
+    if air.wind_profile == "log" and air.wind_speed > 0.0 and height <= air.roughness:
+        raise SettingError(
+            f"environment.roughness = {air.roughness:g} m: must be below launcher.height = {height:g} m: the "
+            "logarithmic law has no wind under it",
+            "environment.roughness",
+            "launcher.height",
         )
 
 

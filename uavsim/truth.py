@@ -36,6 +36,14 @@ UNITS: dict[str, str] = {
     "throttle": "1",
     "rail_s": "m",  # way along the rail since rest; after the last shoe has left it keeps its value
     "catapult_force": "N",
+    "mean_wind_n": "m/s",  # of wind_n: the mean wind at the aircraft's height; the rest is turbulence and gusts
+    "mean_wind_e": "m/s",
+    "gust_n": "m/s",  # of wind_n: the gusts that the scenario sets
+    "gust_e": "m/s",
+    "gust_d": "m/s",
+    "air_p": "rad/s",  # how fast the air turns about the body's axes, by the turbulence
+    "air_q": "rad/s",
+    "air_r": "rad/s",
 }
 """Name of each numeric truth column and its unit, in the order they are written; `phase` (text) follows."""
 

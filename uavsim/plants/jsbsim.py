@@ -14,9 +14,9 @@ The only module that imports jsbsim. Facts it rests on:
 
 import ctypes
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from difflib import get_close_matches
-from math import inf, isfinite, pi, radians
+from math import exp, inf, isfinite, pi
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -26,6 +26,10 @@ from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
 from numpy.typing import NDArray
 
 from uavsim import airdata
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR
+from uavsim.plants.air.moving import MovingAir
+from uavsim.plants.air.moving import State as AirState
+from uavsim.plants.air.weather import at_ground, doubts
 from uavsim.plants.airframe import Airframe
 from uavsim.plants.airframe.figures import of_inertia
 from uavsim.plants.columns import (
@@ -55,11 +59,16 @@ from uavsim.plants.hangar import find_airframe, is_packaged
 from uavsim.plants.plant import Commands, Run
 from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
 from uavsim.plants.settings import AircraftSettings
+from uavsim.truth import STANDARD_GRAVITY
 
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
+SETTLED = 0.5  # s of it, at whose end the shoes are at rest
 WING_OUT = 0.99
 
+_WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
+_TURN = ("air/p-rad_sec", "air/q-rad_sec", "air/r-rad_sec")  # of the air, which an aircraft's damping may read
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
+_TO_JSBSIM = np.array([1.0 / FT] * 3 + [1.0] * 3)
 Row = tuple[float, ...]
 Array = NDArray[np.float64]
 
@@ -128,16 +137,28 @@ class JsbsimPlant:
         self.row: Row = self._read()
         self.rail = self._rail()
         self.on_rail = True
-        self._gust_pending = settings.environment.gust_speed != 0.0
-        self._gust_time: float | None = None
+        self._settling = round(SETTLING_TIME * settings.step_rate)
+        self._moving = MovingAir(
+            settings.environment,
+            settings.launcher.heading_deg,
+            span=self._value("metrics/bw-ft") * FT,
+            step_rate=settings.step_rate,
+            steps=self._settling + round(settings.duration * settings.step_rate) + 1,
+            seed=settings.random_seed,
+        )
+        self._moving.tell("time", 0.0)
+        self._moving.tell("release", settings.release_time)
+        self._wind = [self._node(name).set_double_value for name in _WIND]
+        self._turn = [self._node(name).set_double_value for name in _TURN if name in self._catalogue]
+        self._blown: Iterator[list[float]] = iter(())
         self._attended = True
         self._datum = self.row
         self.aloft = True
         self.failure = ""
+        self._ground = settings.environment.ground_elevation / FT
         self._settle()
         self._buffer = bytearray((round(settings.duration * settings.step_rate) + 2) * ROW.size)
         self._size = 0
-        self._ground = settings.environment.ground_elevation / FT
         self._offsets = (self._lever(self.row),) * 3  # of the sensor from the centre of gravity, newest first
         self._still = True
         self._record(self.row)
@@ -174,11 +195,12 @@ class JsbsimPlant:
         self._node(name).set_double_value(value)
 
     def _place(self) -> None:
-        """Initial conditions at rest on the rail, air, wind and turbulence."""
+        """Initial conditions at rest on the rail, and the air at rest; JSBSim's own turbulence is off."""
         s = self.settings
         air, launcher = s.environment, s.launcher
-        for name in ("simulation/randomseed", "atmosphere/randomseed"):
+        for name in ("simulation/randomseed", "atmosphere/randomseed"):  # an aircraft's own functions may draw
             self._set(name, float(s.random_seed))
+        self._set("atmosphere/turb-type", 0.0)
         self._set("ic/terrain-elevation-ft", air.ground_elevation / FT)
         self._set("ic/lat-geod-deg", air.latitude_deg)
         self._set("ic/h-sl-ft", (air.ground_elevation + launcher.height) / FT)
@@ -194,13 +216,17 @@ class JsbsimPlant:
         if not started:
             raise ValueError("aircraft.model: JSBSim cannot start it from rest on the rail")
         self._check_body()
-        towards = radians(air.wind_from_deg) + pi
-        self._set("atmosphere/wind-north-fps", air.wind_speed * np.cos(towards) / FT)
-        self._set("atmosphere/wind-east-fps", air.wind_speed * np.sin(towards) / FT)
-        if air.turbulence_wind_20ft > 0.0:
-            self._set("atmosphere/turb-type", 3.0)  # MIL-F-8785C Dryden
-            self._set("atmosphere/turbulence/milspec/windspeed_at_20ft_AGL-fps", air.turbulence_wind_20ft / FT)
-            self._set("atmosphere/turbulence/milspec/severity", float(air.turbulence_severity))
+        self._weather()
+
+    def _weather(self) -> None:
+        """Give the air the pressure of the day, and its vapour; JSBSim's own standard is 0.5 Pa above ISO 2533."""
+        environment = self.settings.environment
+        ground = at_ground(environment)
+        fall = exp(-STANDARD_GRAVITY * self.settings.launcher.height / (GAS_CONSTANT_DRY_AIR * ground.temperature))
+        share = ground.pressure * fall / (self._value("atmosphere/P-psf") * PSF)
+        self._set("atmosphere/P-sl-psf", share * self._value("atmosphere/P-sl-psf"))
+        if environment.humidity > 0.0:
+            self._set("atmosphere/RH", 100.0 * environment.humidity)
 
     def _check_body(self) -> None:
         """Refuse a body that cannot be, as JSBSim has it with all that was set: mass, inertia, size."""
@@ -247,15 +273,23 @@ class JsbsimPlant:
         )
 
     def _settle(self) -> None:
-        steps = round(SETTLING_TIME * self.settings.step_rate)
-        for k in range(-steps, 0):
-            self._hold(k * self.dt)
+        loads, counted = 0.0, round(SETTLED * self.settings.step_rate)
+        for k in range(-self._settling, 0):
+            forces = self._hold(k * self.dt)
+            if k >= -counted:
+                loads += (forces.front_normal + forces.rear_normal) / counted
+            if self._moving.blows:
+                self._blow(k * self.dt)
             try:
                 self._run()
             except (BaseError, RuntimeError) as error:
                 _leave_up(self._fdm)
                 raise ValueError(f"aircraft.model: {_said(error, self.settings.aircraft.model)}") from error
             self.row = self._read()
+        if loads > 0.0:
+            raise ValueError(
+                f"environment.wind_speed: the wind would lift the aircraft off the rail: {loads:.0f} N hold it down"
+            )
 
     # -- each step ---------------------------------------------------------------------------------------------------
 
@@ -263,6 +297,11 @@ class JsbsimPlant:
         """Set the onboard computer's commands; they act from the next step on."""
         for node, value in zip(self._commands, commands, strict=True):
             node.set_double_value(value)
+        if self._moving.gusts.awaited:
+            if commands[0] > 0.0:
+                self._moving.tell("wings-commanded", self.t)
+            if commands[1] > 0.0:
+                self._moving.tell("motor-on", self.t)
 
     def step(self) -> None:
         """Advance by one step and record it."""
@@ -297,14 +336,46 @@ class JsbsimPlant:
         self._size += ROW.size
 
     def _attend(self) -> None:
-        """Look after what is not always there: the rail, and a gust that waits for the wing."""
+        """Look after what is not always there: the rail, and air that moves."""
+        moving = self._moving
         if self.on_rail:
             self._hold(self.t)
-        if self._gust_pending:
-            self._watch_for_gust()
-        self._attended = self.on_rail or self._gust_pending
+            if not self.rail.active:
+                moving.tell("rail-exit", self.t)
+        if moving.gusts.awaited and self.row[WING] >= WING_OUT:
+            moving.tell("wing-out", self.t)
+        gusty = self.t >= moving.gust_from
+        if gusty or moving.blows:
+            self._blow(self.t)
+        self._attended = self.on_rail or moving.blows or moving.may_gust
 
-    def _hold(self, time: float) -> None:
+    def _blow(self, time: float) -> None:
+        """Let the air move through the step that begins at `time`."""
+        north = east = down = p = q = r = 0.0
+        if self._moving.blows:
+            row = next(self._blown, None)
+            if row is None:
+                self._blown = iter((self._moving.ahead(self._state())[:, :6] * _TO_JSBSIM).tolist())
+                row = next(self._blown)
+            north, east, down, p, q, r = row
+        if time >= self._moving.gust_from:
+            x, y, z = self._moving.gust(time)
+            north, east, down = north + x / FT, east + y / FT, down + z / FT
+        to_north, to_east, to_down = self._wind
+        to_north(north)
+        to_east(east)
+        to_down(down)
+        for turn, rate in zip(self._turn, (p, q, r), strict=False):
+            turn(rate)
+
+    def _state(self) -> AirState:
+        """What the air is told of the aircraft."""
+        row = self.row
+        return AirState(
+            (row[ALTITUDE] - self._ground) * FT, -row[INDEX["vd"]] * FT, row[INDEX["airspeed"]] * FT, *ATTITUDE(row)
+        )
+
+    def _hold(self, time: float) -> RailForces:
         row = self.row
         north, east, altitude, vn, ve, vd = MOTION(row)
         north0, east0, altitude0, *_ = MOTION(self._datum)
@@ -317,6 +388,7 @@ class JsbsimPlant:
         forces = self.rail.forces(time, motion, self._shoe_offsets(row))
         self.on_rail = self.rail.active
         self._push(forces if self.on_rail else FREE)
+        return forces
 
     def _push(self, f: RailForces) -> None:
         values = (f.axial, f.front_normal, f.front_lateral, f.rear_normal, f.rear_lateral, f.roll_moment)
@@ -331,24 +403,6 @@ class JsbsimPlant:
             ((x - front[0]) * INCH, (front[1] - y) * INCH, (z - front[2]) * INCH),
             ((x - rear[0]) * INCH, (rear[1] - y) * INCH, (z - rear[2]) * INCH),
         )
-
-    def _watch_for_gust(self) -> None:
-        air = self.settings.environment
-        if self._gust_time is None:
-            if self.row[WING] >= WING_OUT:
-                self._gust_time = self.t + air.gust_delay
-        elif self.t >= self._gust_time:
-            towards = radians(self.settings.launcher.heading_deg) + pi
-            gust = "atmosphere/cosine-gust/"
-            self._set(gust + "startup-duration-sec", air.gust_length_s / 2.0)
-            self._set(gust + "steady-duration-sec", 0.0)
-            self._set(gust + "end-duration-sec", air.gust_length_s / 2.0)
-            self._set(gust + "magnitude-ft_sec", air.gust_speed / FT)
-            self._set(gust + "frame", 3.0)  # local north-east-down
-            self._set(gust + "X-velocity-ft_sec", float(np.cos(towards)))
-            self._set(gust + "Y-velocity-ft_sec", float(np.sin(towards)))
-            self._set(gust + "start", 1.0)
-            self._gust_pending = False
 
     # -- what sensors read -------------------------------------------------------------------------------------------
 
@@ -428,9 +482,21 @@ class JsbsimPlant:
         raw["east"] = raw["east"] - self._datum[INDEX["east"]] * FT
         raw["rail_s"] = self._travel(raw)
         raw["heading"] = _continuous(raw["heading"])
+        raw |= self._moving.record(self._settling, raw["t"])
         with np.errstate(all="ignore"):  # unchecked: it may have diverged
             raw["p_total"] = airdata.isentropic_total(raw["p_static"], raw["mach"], np)
         return raw
+
+    @property
+    def remarks(self) -> list[str]:
+        """What deserves a word: a line each, more of them at the end than at the start."""
+        said = doubts(self.settings.environment)
+        if self.settings.environment.turbulence_wind_20ft > 0.0 and len(self._turn) < len(_TURN):
+            said.append(
+                f"{self.settings.aircraft.model} flies without the turbulence's rotation (p, q, r): it has no "
+                f"{', '.join(_TURN)} that its damping reads"
+            )
+        return said + (self._moving.gusts.missed(self.t) if self.k else [])
 
     def _travel(self, c: dict[str, Array]) -> Array:
         """Way along the rail, m, kept once the last shoe has left."""

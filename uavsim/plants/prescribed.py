@@ -1,9 +1,7 @@
 """A rig as a plant: the truth of the whole run is known before it starts, and no command changes it.
 
 The columns that a rig does not give are NaN: there is no wing on a bench. The air is that of the room, at rest unless
-the rig says otherwise: the standard atmosphere (ISO 2533) at the place's elevation,
-
-    p = 101 325 Pa (1 - L h / 288.15 K)^(g0 / (R L)),   T = 288.15 K - L h + offset,   L = 6.5 K/km
+the rig says otherwise (`air.weather`).
 """
 
 from math import isfinite
@@ -11,24 +9,18 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.plants.air.weather import at_ground
 from uavsim.plants.plant import Commands, Run, Vector
 from uavsim.plants.settings import EnvironmentSettings
-from uavsim.truth import STANDARD_GRAVITY, UNITS
+from uavsim.truth import UNITS
 
 Array = NDArray[np.float64]
-
-SEA_LEVEL_PRESSURE = 101_325.0  # Pa, ISO 2533
-SEA_LEVEL_TEMPERATURE = 288.15  # K, ISO 2533
-LAPSE = 6.5e-3  # K/m, ISO 2533
-GAS_CONSTANT = 287.05287  # J/(kg K), of dry air, ISO 2533
 
 
 def room(environment: EnvironmentSettings) -> tuple[float, float]:
     """Pressure, Pa, and temperature, K, of still air at the place."""
-    cold = SEA_LEVEL_TEMPERATURE - LAPSE * environment.ground_elevation
-    exponent = STANDARD_GRAVITY / (GAS_CONSTANT * LAPSE)
-    pressure = SEA_LEVEL_PRESSURE * (cold / SEA_LEVEL_TEMPERATURE) ** exponent
-    return float(pressure), cold + environment.temperature_offset
+    pressure, temperature, _ = at_ground(environment)
+    return pressure, temperature
 
 
 class PrescribedPlant:

@@ -1,9 +1,13 @@
-"""What a JSBSim flight is told before it starts: aircraft, air and launcher. Free of jsbsim, so scenarios load fast."""
+"""What a JSBSim flight is told before it starts: aircraft and launcher. Free of jsbsim, so scenarios load fast."""
 
 from dataclasses import dataclass, field
 from typing import Annotated
 
 from annotated_types import Ge, Gt, Interval
+
+from uavsim.plants.air.settings import EnvironmentSettings
+
+__all__ = ["AircraftSettings", "EnvironmentSettings", "LauncherSettings"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,46 +25,6 @@ class AircraftSettings:
 
     model: str = "fw8"
     properties: dict[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class EnvironmentSettings:
-    """The air and the place.
-
-    Attributes
-    ----------
-    latitude_deg
-        Geodetic latitude, degrees.
-    ground_elevation
-        Of the ground above mean sea level, m.
-    temperature_offset
-        Difference from the standard atmosphere's temperature, K.
-    wind_speed
-        Mean wind over the ground, m/s.
-    wind_from_deg
-        Direction it comes from, degrees from north.
-    turbulence_wind_20ft
-        Wind speed at 20 ft that sets the intensity of low-altitude Dryden turbulence (MIL-F-8785C), m/s; 0 is none.
-    turbulence_severity
-        Probability-of-exceedance index of the same model above 2000 ft (1 … 7).
-    gust_speed
-        Peak of a one-minus-cosine gust, m/s, positive from ahead; 0 is none.
-    gust_length_s
-        Its duration, s.
-    gust_delay
-        Its start after the wing is out, s.
-    """
-
-    latitude_deg: Annotated[float, Interval(ge=-90, le=90)] = 47.0
-    ground_elevation: Annotated[float, Interval(ge=-400, le=4000)] = 0.0
-    temperature_offset: Annotated[float, Interval(ge=-60, le=40)] = 0.0
-    wind_speed: Annotated[float, Interval(ge=0, le=25)] = 0.0
-    wind_from_deg: Annotated[float, Interval(ge=-360, le=360)] = 0.0
-    turbulence_wind_20ft: Annotated[float, Interval(ge=0, le=25)] = 0.0
-    turbulence_severity: Annotated[int, Interval(ge=1, le=7)] = 3
-    gust_speed: Annotated[float, Interval(ge=-15, le=15)] = 0.0
-    gust_length_s: Annotated[float, Interval(ge=0.1, le=20)] = 2.0
-    gust_delay: Annotated[float, Interval(ge=0, le=600)] = 5.0
 
 
 @dataclass(frozen=True, slots=True)

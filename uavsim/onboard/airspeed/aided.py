@@ -168,7 +168,7 @@ class AidedFilter(Estimator):
         sd = sqrt(max(self._total_variance, self._static_variance))
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
-        self._air = Air(aided, self._waiting.scale)
+        self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
         self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
         self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)

@@ -1,6 +1,7 @@
 """The air that the aided filter flies in: its density, its gusts, and airspeed from a pressure ratio.
 
-The temperature is the thermometer's. The density is that of dry air at the filter's own static pressure, ρ = p/(R T).
+The temperature is the thermometer's. The density is that at the filter's own static pressure, ρ = p/(R T), R with the
+vapour that is known of.
 """
 
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_TEMPERATURE
@@ -21,7 +22,9 @@ class Air:
     aided : AidedSettings
         What is believed of the gusts.
     calibration : float
-        Factor between the airspeed of the pressures and the one told.
+        Factor between the airspeed of the pressures in dry air and the one told.
+    lightness : float
+        Density of dry air over that of the air as it is, at the same pressure and temperature.
 
     Attributes
     ----------
@@ -43,6 +46,7 @@ class Air:
         "_aided",
         "_calibration",
         "_falls",
+        "_lightness",
         "density",
         "gas",
         "ground",
@@ -52,8 +56,8 @@ class Air:
         "temperature",
     )
 
-    def __init__(self, aided: AidedSettings, calibration: float) -> None:
-        self._aided, self._calibration = aided, calibration
+    def __init__(self, aided: AidedSettings, calibration: float, lightness: float = 1.0) -> None:
+        self._aided, self._calibration, self._lightness = aided, calibration, lightness
         self._falls = aided.gust_height > 0.0 and aided.gust_sd > 0.0
         self.gust = gust_density(aided, 0.0)
         self.ground = self.density = float("nan")
@@ -66,7 +70,7 @@ class Air:
 
     def warm(self, temperature: float) -> None:
         """Take a temperature, K."""
-        self.temperature, self.gas = temperature, GAS_CONSTANT_DRY_AIR * temperature
+        self.temperature, self.gas = temperature, GAS_CONSTANT_DRY_AIR * temperature * self._lightness
         self.heat = SEVEN_R * temperature * self._calibration * self._calibration
 
     def at(self, static: float) -> None:

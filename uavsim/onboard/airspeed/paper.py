@@ -88,6 +88,7 @@ class PaperFilter(Estimator):
         "_total",
         "_total_ends",
         "_wind_sd",
+        "lightness",
     )
 
     def __init__(
@@ -100,8 +101,9 @@ class PaperFilter(Estimator):
         )
         # Airspeed over that of dry air with K = 1; the lighter moist air is faster for the same pressures.
         reference = {"pressure": 101_325.0, "temperature": 288.15, "compressibility": 1.0}
-        moist = airdata.moist_air_density(**reference, vapour_fraction=settings.vapour_fraction)
-        scale_squared = settings.calibration**2 * airdata.moist_air_density(**reference) / moist
+        moist = airdata.moist_air_density(**reference, vapour_fraction=settings.vapour_fraction or 0.0)
+        self.lightness = airdata.moist_air_density(**reference) / moist
+        scale_squared = settings.calibration**2 * self.lightness
         self._scale = sqrt(scale_squared)
         self._star = scale_squared * 2.0 * airdata.MOLAR_GAS_CONSTANT / airdata.MOLAR_MASS_DRY_AIR
         self._heating = 0.5 * (airdata.GAMMA - 1.0) / (airdata.GAMMA * airdata.GAS_CONSTANT_DRY_AIR * scale_squared)

@@ -88,8 +88,8 @@ class EstimatorSettings:
         Q itself, growth of the pressure's variance from one sample to the next, Pa², in place of the gain.
     wind_sd : float
         Standard deviation of the airspeed while nothing is measured, m/s: that of the wind.
-    vapour_fraction : float
-        Mole fraction of water vapour in the air.
+    vapour_fraction : float or None
+        Mole fraction of water vapour in the air. None: that of the place's air; 0 where nothing is known of it.
     calibration : float
         K, which multiplies the airspeed.
     fastest : float or None
@@ -108,7 +108,7 @@ class EstimatorSettings:
     q_total: Annotated[float, Interval(gt=0.0, le=1e8)] | None = None
     q_static: Annotated[float, Interval(gt=0.0, le=1e8)] | None = None
     wind_sd: Annotated[float, Interval(gt=0.0, le=100.0)] = 3.0
-    vapour_fraction: Annotated[float, Interval(ge=0.0, le=0.2)] = 0.0
+    vapour_fraction: Annotated[float, Interval(ge=0.0, le=0.2)] | None = None
     calibration: Annotated[float, Interval(gt=0.0, le=10.0)] = 1.0
     fastest: Annotated[float, Interval(gt=0.0, le=FASTEST)] | None = None
     aided: AidedSettings = field(default_factory=AidedSettings)
