@@ -27,6 +27,7 @@ from uavsim.cli.common import (
 )
 from uavsim.cli.printed import Json, document
 from uavsim.folders import Place
+from uavsim.views.text import visible
 
 if TYPE_CHECKING:
     from uavsim.cosim import Cosimulation
@@ -96,7 +97,9 @@ def _fly_one(place: Held, ready: Ready, *, plots: bool, as_json: bool) -> None:
     from uavsim.views import documents, terminal
 
     with place as held:  # before anything is flown in vain
-        flight = _flown(ready())
+        simulation = ready()
+        _remark(simulation.remarks)
+        flight = _flown(simulation)
         flight.write(held.folder, plotter(flight) if plots else None)
     if as_json:
         document(documents.flight(flight, held.target))
@@ -104,6 +107,12 @@ def _fly_one(place: Held, ready: Ready, *, plots: bool, as_json: bool) -> None:
         terminal.print_score(flight)
         terminal.say(f"written to {held.target}")
     leave(as_expected(flight.score))
+
+
+def _remark(remarks: list[str]) -> None:
+    """Say at the start what deserves a word."""
+    for remark in remarks:
+        typer.echo(f"Note: {visible(remark)}", err=True)
 
 
 def _flown(simulation: "Cosimulation") -> "Flight":
@@ -136,7 +145,7 @@ def _fly_many(
     from uavsim.views import documents, terminal
 
     with place as held:
-        ready()  # only to see whether it can be flown
+        _remark(ready().remarks)  # and to see whether it can be flown
         record = view.Record(held.folder, scenario, numbers)
         with Bar(f"flying {scenario.name}") as bar:
             flown = fly_seeds(scenario, numbers, progress=lambda n, all_: bar.show(n / all_), keep=record.keep)

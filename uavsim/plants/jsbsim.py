@@ -68,7 +68,6 @@ WING_OUT = 0.99
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
 _TURN = ("air/p-rad_sec", "air/q-rad_sec", "air/r-rad_sec")  # of the air, which an aircraft's damping may read
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
-_TO_JSBSIM = np.array([1.0 / FT] * 3 + [1.0] * 3)
 Row = tuple[float, ...]
 Array = NDArray[np.float64]
 
@@ -148,9 +147,10 @@ class JsbsimPlant:
         )
         self._moving.tell("time", 0.0)
         self._moving.tell("release", settings.release_time)
-        self._wind = [self._node(name).set_double_value for name in _WIND]
-        self._turn = [self._node(name).set_double_value for name in _TURN if name in self._catalogue]
-        self._blown: Iterator[list[float]] = iter(())
+        self._wind_to = [self._node(name).set_double_value for name in _WIND]
+        turns = all(name in self._catalogue for name in _TURN)
+        self._turn_to = [self._node(name).set_double_value for name in _TURN] if turns else []
+        self._motion: Iterator[list[float]] | None = None
         self._attended = True
         self._datum = self.row
         self.aloft = True
@@ -278,7 +278,7 @@ class JsbsimPlant:
             forces = self._hold(k * self.dt)
             if k >= -counted:
                 loads += (forces.front_normal + forces.rear_normal) / counted
-            if self._moving.blows:
+            if self._moving.active:
                 self._blow(k * self.dt)
             try:
                 self._run()
@@ -342,31 +342,27 @@ class JsbsimPlant:
             self._hold(self.t)
             if not self.rail.active:
                 moving.tell("rail-exit", self.t)
-        if moving.gusts.awaited and self.row[WING] >= WING_OUT:
+        awaited = moving.gusts.awaited
+        if awaited and self.row[WING] >= WING_OUT:
             moving.tell("wing-out", self.t)
-        gusty = self.t >= moving.gust_from
-        if gusty or moving.blows:
+        if moving.active:
             self._blow(self.t)
-        self._attended = self.on_rail or moving.blows or moving.may_gust
+        self._attended = self.on_rail or moving.active or bool(awaited)
 
     def _blow(self, time: float) -> None:
         """Let the air move through the step that begins at `time`."""
-        north = east = down = p = q = r = 0.0
-        if self._moving.blows:
-            row = next(self._blown, None)
-            if row is None:
-                self._blown = iter((self._moving.ahead(self._state())[:, :6] * _TO_JSBSIM).tolist())
-                row = next(self._blown)
-            north, east, down, p, q, r = row
-        if time >= self._moving.gust_from:
-            x, y, z = self._moving.gust(time)
-            north, east, down = north + x / FT, east + y / FT, down + z / FT
-        to_north, to_east, to_down = self._wind
-        to_north(north)
-        to_east(east)
-        to_down(down)
-        for turn, rate in zip(self._turn, (p, q, r), strict=False):
-            turn(rate)
+        if self._motion is None:
+            self._motion = self._moving.motion(time, self._state)
+        north, east, down, p, q, r = next(self._motion)
+        to_north, to_east, to_down = self._wind_to
+        to_north(north / FT)
+        to_east(east / FT)
+        to_down(down / FT)
+        if self._turn_to:
+            turn_p, turn_q, turn_r = self._turn_to
+            turn_p(p)
+            turn_q(q)
+            turn_r(r)
 
     def _state(self) -> AirState:
         """What the air is told of the aircraft."""
@@ -491,7 +487,7 @@ class JsbsimPlant:
     def remarks(self) -> list[str]:
         """What deserves a word: a line each, more of them at the end than at the start."""
         said = doubts(self.settings.environment)
-        if self.settings.environment.turbulence_wind_20ft > 0.0 and len(self._turn) < len(_TURN):
+        if self.settings.environment.turbulence_wind_20ft > 0.0 and not self._turn_to:
             said.append(
                 f"{self.settings.aircraft.model} flies without the turbulence's rotation (p, q, r): it has no "
                 f"{', '.join(_TURN)} that its damping reads"

@@ -31,7 +31,14 @@ if TYPE_CHECKING:
 
 ERROR_STEP = 0.1  # s, bin of the common time axis of errors
 COURSES = 60  # flights whose courses are kept; the information of the bound is averaged over them
-APART = ("seed", "outcome", "versions", "plugins", "requirements")  # of a score: not of a row, or by another name
+APART = (
+    "seed",
+    "outcome",
+    "versions",
+    "plugins",
+    "requirements",
+    "remarks",
+)  # of a score: not of a row, or by another name
 ERROR_START = -1.0  # s after the true launch at which it begins
 
 Progress = Callable[[int, int], None]

@@ -28,6 +28,7 @@ def notes(flight: "Flight") -> list[str]:
         _bias(flight, scenario) or _no_help(flight, scenario),
         _lag(flight, scenario),
         _single_flight(flight),
+        *(f"{remark}." for remark in flight.score.get("remarks", ())),
     ]
     return [note for note in found if note]
 

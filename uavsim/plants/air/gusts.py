@@ -89,15 +89,6 @@ class Gusts:
         begun = [max(g.begin, time) for g in self.all if g.begin is not None and g.end > time]
         return min(begun, default=inf)
 
-    def at(self, time: float) -> Vector:
-        """Velocity of the air in all gusts, m/s, north-east-down."""
-        north = east = down = 0.0
-        for gust in self.all:
-            if gust.begin is not None and (part := share(gust.gust, time - gust.begin)):
-                x, y, z = gust.vector
-                north, east, down = north + part * x, east + part * y, down + part * z
-        return north, east, down
-
     def over(self, times: Array) -> Array:
         """Velocity of the air in all gusts, m/s, north-east-down, (n, 3), at ascending times, s."""
         total = np.zeros((times.size, 3))

@@ -5,6 +5,7 @@ next; within these the height goes on as the aircraft climbs, and wind and inten
 give at a step's beginning blows through that step.
 """
 
+from collections.abc import Callable, Iterator
 from math import cos, exp, expm1, inf, pi, sin, sqrt
 from typing import NamedTuple
 
@@ -193,9 +194,9 @@ class MovingAir:
     ----------
     blows : bool
         Whether there is mean wind or turbulence.
+    active : bool
+        Whether `motion` is to be asked: there is, or a gust may bring it without another event.
     gusts : Gusts
-    gust_from : float
-        From when on `gust` is to be asked, s; inf as long as none is to come.
     """
 
     def __init__(
@@ -205,7 +206,7 @@ class MovingAir:
         self._rough = environment.turbulence_wind_20ft > 0.0
         self.blows = self._rough or environment.wind_speed > 0.0
         self.gusts = Gusts(environment, heading_deg)
-        self.gust_from = inf
+        self.active, self._told = self.blows, False
         self._ahead = max(1, round(AHEAD * step_rate))
         self._random = [np.random.Generator(np.random.PCG64(s)) for s in np.random.SeedSequence(seed).spawn(2)]
         self._noise = [np.zeros((0, STATES))] * 2
@@ -215,32 +216,58 @@ class MovingAir:
         self._record = np.zeros((steps + self._ahead if self.blows else 0, COLUMNS))
         self._size = 0
 
-    @property
-    def may_gust(self) -> bool:
-        """Whether a gust blows or is still to come."""
-        return self.gust_from < inf or bool(self.gusts.awaited)
+    def motion(self, time: float, state: Callable[[], State]) -> Iterator[list[float]]:
+        """Yield, step by step, the air's velocity, m/s, north-east-down, and its rotation, rad/s, body axes.
+
+        Parameters
+        ----------
+        time : float
+            At which the first step begins, s.
+        state : callable
+            Tells of the aircraft; asked every 10 ms.
+        """
+        since = np.arange(self._ahead) * self._box[7]
+        first = round(time / self._box[7])
+        while True:
+            block = self.ahead(state())[:, :6] if self.blows else np.zeros((self._ahead, 6))
+            times, done = first * self._box[7] + since, 0
+            first += self._ahead
+            self.active = self.blows or self.gusts.following(float(times[0])) < inf
+            while done < len(block):
+                self._told = False
+                for row in self._with_gusts(block[done:], times[done:]):
+                    yield row
+                    done += 1
+                    if self._told:
+                        break
+
+    def _with_gusts(self, block: Array, times: Array) -> list[list[float]]:
+        """Return the rows of a block, of steps that begin at `times`, with the gusts that blow then."""
+        if self.gusts.following(float(times[0])) > times[-1]:
+            rows: list[list[float]] = block.tolist()
+            return rows
+        blown = block.copy()
+        blown[:, :3] += self.gusts.over(times)
+        return blown.tolist()  # type: ignore[no-any-return]
 
     def ahead(self, state: State) -> Array:
         """Return what blows through each of the steps of the next 10 ms, gusts apart: rows of `COLUMNS`."""
         if self._rough and not self._size:
             self._begin(state)
         is_high = self._rough and state.height > LOW * FOOT
+        if self._size + self._ahead > len(self._record):  # flown for longer than was said
+            self._record = np.concatenate([self._record, np.zeros((max(DRAWN, len(self._record)), COLUMNS))])
         out = self._record[self._size : self._size + self._ahead]
         upper = sd_above(state.height, self._severity) if is_high else 0.0
         blow(out, self._box, self._normal(0, self._rough), self._normal(1, is_high), *state, upper)
         self._size += len(out)
         return out
 
-    def gust(self, time: float) -> Vector:
-        """Return the velocity of the air in gusts, m/s, north-east-down, at a time of the record, s."""
-        velocity = self.gusts.at(time)
-        self.gust_from = self.gusts.following(time)
-        return velocity
-
     def tell(self, event: str, time: float) -> None:
-        """Say that an event has come (`Gusts.tell`)."""
-        self.gusts.tell(event, time)
-        self.gust_from = self.gusts.following(time)
+        """Say that an event has come (`Gusts.tell`); a gust without delay blows from the next step on."""
+        if event in self.gusts.awaited:
+            self.gusts.tell(event, time)
+            self._told = self.active = True
 
     def record(self, first: int, times: Array) -> dict[str, Array]:
         """Return columns of the truth at the times of a record's rows, s.
