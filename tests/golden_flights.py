@@ -28,7 +28,9 @@ CLOSE = 1e-9  # of a column's root mean square, or of a figure of the score
 PLACE = (
     "environment.ground_elevation=420", "environment.temperature_offset=14", "environment.latitude_deg=-33",
     "environment.wind_speed=4", "environment.wind_from_deg=60", "environment.turbulence_wind_20ft=3.5",
-    "environment.turbulence_severity=5",
+    "environment.turbulence_severity=5", 'environment.turbulence_model="mil-hdbk-1797"', "environment.wind_veer=25",
+    'environment.wind_profile="power"', "environment.wind_exponent=0.21", "environment.sea_level_pressure=98700",
+    "environment.humidity=0.6",
 )  # fmt: skip
 RAIL = (
     "launcher.heading_deg=35", "launcher.elevation_deg=17", "launcher.peak_specific_force_g=9.5", "launcher.rise=0.021",
@@ -122,7 +124,10 @@ FLIGHTS: dict[str, Wanted] = {
     "other-units": ("catapult", 29, (*UNITS, *AIDED, *NOT_TWICE, "duration=8")),
     "gust": ("gusty", 12, (
         *NOT_TWICE, "duration=9", "environment.wind_from_deg=-25", "environment.gust_delay=1",
-        "environment.gust_length_s=1.7", 'accelerometer.preset="adxl345"', "air_data.pipe=0.05",
+        "environment.gust_length_s=1.7", 'environment.gust_at="rail-exit"', 'environment.gust_direction="left"',
+        'environment.gust_shape="step"', "environment.roughness=0.3", "environment.turbulence_wind_20ft=5",
+        'environment.gusts=[{speed=-3,direction="up",at="wings-commanded",delay=0.05,length_s=0.4}]',
+        'accelerometer.preset="adxl345"', "air_data.pipe=0.05",
         'air_data.tare="open"', "estimator.aided.gust_height=0", "launcher.elevation_deg=9",
     )),
     "knock-and-launch": ("catapult", 13, (
@@ -160,7 +165,7 @@ FLIGHTS: dict[str, Wanted] = {
         'accelerometer.faults=[{kind="offset",start=2.1,stop=2.16,size=60,axis="x"}]',
     )),
     "readings-go-wrong": ("cheap-sensors", 18, (
-        *NOT_TWICE, "duration=9",
+        *NOT_TWICE, "duration=9", 'environment.preset="humid"', "mismatch.humidity=0.4",
         'air_data.total.faults=[{kind="spike",start=3,stop=6,size=400,probability=0.03},{kind="stuck",start=7,stop=8}]',
         'air_data.static.faults=[{kind="invalid",start=5,stop=5.4},{kind="dropout",start=6,probability=0.3}]',
         'accelerometer.faults=[{kind="stuck",start=6,stop=6.2}]',

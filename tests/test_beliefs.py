@@ -6,12 +6,14 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+import uavsim
 from sensors import AccelerometerKnowledge, AirDataHead, HeadKnowledge, Streams
 from sensors.knowledge import PressureKnowledge
 from uavsim import beliefs
 from uavsim.beliefs import believed_air, believed_noise, calibrated, turbulence
 from uavsim.cosim import draw
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
+from uavsim.plants.settings import EnvironmentSettings
 from uavsim.scenario import Scenario, load_scenario
 
 
@@ -112,12 +114,26 @@ def test_a_calibration_is_of_the_units_that_fly_with_its_error() -> None:
 
 def test_turbulence_is_that_of_the_specification() -> None:
     """MIL-F-8785C at 200 ft and 15 m/s at 20 ft: σ_u = 1.5/0.3416^0.4, L_u = 200/0.3416^1.2 ft."""
-    sd, length = turbulence(15.0, 200.0 * 0.3048)
+
+    def along(height: float, heading_deg: float = 20.0) -> tuple[float, float]:
+        air = EnvironmentSettings(wind_from_deg=20.0, turbulence_wind_20ft=15.0)
+        return turbulence(air, height, heading_deg)
+
+    sd, length = along(200.0 * 0.3048)
     assert sd == pytest.approx(1.5 / 0.3416**0.4, rel=1e-9)
     assert length == pytest.approx(200.0 / 0.3416**1.2 * 0.3048, rel=1e-9)
-    assert turbulence(15.0, 0.0) == turbulence(15.0, 3.048)
-    assert turbulence(15.0, 900.0) == pytest.approx(turbulence(15.0, 304.8))
-    assert turbulence(15.0, 300.0) != pytest.approx(turbulence(15.0, 304.8), rel=1e-3)
+    assert along(0.0) == along(3.048)
+    assert along(500.0) == pytest.approx(along(304.8))
+    assert along(300.0) != pytest.approx(along(304.8), rel=1e-3)
+
+
+def test_across_the_wind_turbulence_wanders_half_as_fast_again() -> None:
+    """Φ_v falls to 3 σ²/(π L ω²)·V where Φ_u falls to 2 σ²/(π L ω²)·V: MIL-F-8785C, for L ω ≫ V."""
+    air = EnvironmentSettings(wind_from_deg=-70.0, turbulence_wind_20ft=9.0)
+    sd, length = turbulence(air, 60.0, 110.0)
+    across_sd, across_length = turbulence(air, 60.0, 20.0)
+    assert across_sd == sd
+    assert sd**2 / across_length == pytest.approx(1.5 * sd**2 / length, rel=1e-12)
 
 
 def test_declared_turbulence_is_believed_and_none_changes_nothing() -> None:
@@ -126,7 +142,7 @@ def test_declared_turbulence_is_believed_and_none_changes_nothing() -> None:
     assert calm == replace(plain, flight_force=calm.flight_force)
     gusty = scenario("environment.turbulence_wind_20ft=7.5", "flight_computer.height=60")
     found = believed_air(gusty).aided
-    assert (found.gust_sd, found.gust_length) == turbulence(7.5, 60.0)
+    assert (found.gust_sd, found.gust_length) == turbulence(EnvironmentSettings(turbulence_wind_20ft=7.5), 60.0, 0.0)
     assert found.gust_height == 60.0
     assert believed_air(scenario("environment.turbulence_wind_20ft=7.5", "mismatch.gust=0")).aided == calm
 
@@ -162,3 +178,28 @@ def test_a_part_without_noise_rounds() -> None:
         noise = believed_noise(scenario("air_data.total.mode=x2/x1", f"air_data.total.noise_scale={scale}"))
         full = believed_noise(scenario("air_data.total.mode=x2/x1"))
         assert noise.total_sd == pytest.approx(full.total_sd if sd is None else sd, rel=1e-3)
+
+
+def test_humidity_of_the_place_is_believed_but_for_what_the_mismatch_keeps() -> None:
+    """35 °C and 74 % at sea level: 4.12 % of the molecules are vapour (CIPM-2007)."""
+    humid = scenario('environment.preset="humid"')
+    assert believed_air(humid).vapour_fraction == pytest.approx(0.0412, abs=0.0002)
+    half = believed_air(scenario('environment.preset="humid"', "mismatch.humidity=0.5")).vapour_fraction
+    assert half == pytest.approx(0.0206, abs=0.0001)
+    assert (
+        believed_air(scenario('environment.preset="humid"', "estimator.vapour_fraction=0.01")).vapour_fraction == 0.01
+    )
+    assert believed_air(scenario()).vapour_fraction == 0.0
+
+
+@pytest.mark.parametrize("kind", ["aided", "paper"])
+def test_moist_air_is_flown_in_without_a_bias(kind: str) -> None:
+    """Told nothing of the vapour it would read 0.25 m/s too little at 32 m/s: half of 1.55 %."""
+
+    def bias(*more: str) -> float:
+        flight = uavsim.fly(scenario('environment.preset="humid"', "duration=15", f'estimator.kind="{kind}"', *more))
+        return float(flight.score["airspeed"]["cruise"]["bias"])
+
+    told, untold = bias(), bias("mismatch.humidity=0")
+    assert abs(told) < 0.1
+    assert told - untold == pytest.approx(0.25, abs=0.05)

@@ -443,7 +443,7 @@ def is_simple(hint: Any) -> bool:
 PARTLY = {"air_data.total.iir", "air_data.static.iir"}  # what a part has is less than what its key allows
 SIMPLE = sorted({key for key in KEYS if is_simple(hint_of(Scenario, key))} - PARTLY)
 # The bounds that several keys share.
-SHARED = r"wait_max|longest wait|shortest wait|never be sure|is not read by|lasts no more than"
+SHARED = r"wait_max|longest wait|shortest wait|never be sure|is not read by|lasts no more than|no wind under it"
 PROPERTIES = st.dictionaries(
     st.from_regex(r"[a-z][a-z/.\[\]0-9-]{0,20}", fullmatch=True),
     st.floats(-1e9, 1e9).filter(lambda number: number == 0.0 or abs(number) >= SMALLEST_NUMBER),

@@ -316,10 +316,10 @@ def _apply(values: dict[str, Any], override: str) -> str:
         group = group.setdefault(part, {})
         if not isinstance(group, dict):
             raise SettingError(f"--set {shown(override)}: {part} is a value, not a group")
-    if key == WEATHER:  # a weather that is asked for comes before what the file says of the same
-        for name in PRESETS[text].keys if text in PRESETS else ():
-            group.pop(name, None)
     value = _value(text)
+    if key == WEATHER and value in list(PRESETS):  # one that is asked for comes before what the file says of the same
+        for name in PRESETS[value].keys:
+            group.pop(name, None)
     is_text = declared and settings.hint_of(Scenario, key) is str
     group[last] = text if is_text and not isinstance(value, str) else value
     return key

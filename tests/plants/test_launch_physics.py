@@ -206,8 +206,10 @@ def test_aircraft_does_not_leave_before_release_nor_roll_in_wind() -> None:
 
 def test_headwind_is_airspeed_on_the_rail() -> None:
     truth = launch(LauncherSettings(), environment=WIND, duration=0.15).truth()
-    assert truth["airspeed"] == pytest.approx(6.0, rel=1e-3)
-    assert truth["wind_n"] == pytest.approx(-6.0, rel=1e-6)
+    """MIL-F-8785C 3.7.3.2: 6 m/s at 20 ft are 6 ln(1.5/0.04572)/ln(6.096/0.04572) = 4.28 m/s at 1.5 m."""
+    wind = 6.0 * np.log(1.5 / 0.04572) / np.log(6.096 / 0.04572)
+    assert truth["airspeed"] == pytest.approx(wind, rel=1e-3)
+    assert truth["wind_n"] == pytest.approx(-wind, rel=1e-5)
 
 
 def test_gust_has_its_peak_shape_and_time() -> None:

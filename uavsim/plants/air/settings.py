@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from annotated_types import Gt, Interval
+from annotated_types import Interval
 
 Profile = Literal["log", "power", "uniform"]
 Model = Literal["mil-f-8785c", "mil-hdbk-1797"]
@@ -99,7 +99,7 @@ class EnvironmentSettings:
     wind_from_deg: Annotated[float, Interval(ge=-360, le=360)] = 0.0
     wind_profile: Profile = "log"
     roughness: Annotated[float, Interval(ge=1e-4, le=2)] = 0.04572
-    wind_exponent: Annotated[float, Gt(0), Interval(le=0.6)] = 1.0 / 7.0
+    wind_exponent: Annotated[float, Interval(gt=0, le=0.6)] = 1.0 / 7.0
     wind_veer: Annotated[float, Interval(ge=-60, le=60)] = 0.0
     turbulence_model: Model = "mil-f-8785c"
     turbulence_wind_20ft: Annotated[float, Interval(ge=0, le=25)] = 0.0
