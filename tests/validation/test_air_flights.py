@@ -3,8 +3,8 @@
 Authority: MIL-F-8785C, whose turbulence of low altitude goes by height above the ground. 100 flights of `gusty` without
 its gust on each field, the same seeds, none of which anything was tuned on. A flight's air is that of its seed, so that
 standard deviations are compared in pairs: 100 pairs whose ratios scatter by some 3 % show 1 % (3 standard errors).
-Outcomes are compared with those at sea level by Fisher's test at 1 %, Holm over the fields: 100 of 100 against 92 of 100
-is found.
+Outcomes are compared with those at sea level by Fisher's test at 1 %, Holm over the fields: 100 of 100 against 92 is
+found.
 """
 
 from collections.abc import Callable
