@@ -53,11 +53,15 @@ from uavsim.plants.columns import (
 )
 from uavsim.plants.hangar import find_airframe, is_packaged
 from uavsim.plants.plant import Commands, Run
-from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
+from uavsim.plants.rail import Motion, Rail, RailForces, Vector, body_axes, turned
 from uavsim.plants.settings import AircraftSettings
 
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
 WING_OUT = 0.99
+
+RATES_BY = ("simulation/integrator/rate/rotational", "simulation/integrator/rate/translational")
+MEAN_OF_STEP = 1.0  # rectangular: an acceleration acts for the step after it, so the rail gives the mean over that
+TWO_STEPS = 3.0  # Adams-Bashforth of second order, in flight; the rectangular loses 2 % of a roll while the wings open
 
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
 Row = tuple[float, ...]
@@ -126,11 +130,13 @@ class JsbsimPlant:
             for end in ("front", "rear")
         )
         self.row: Row = self._read()
+        self._gravity = self._value("accelerations/gravity-ft_sec2") * FT
         self.rail = self._rail()
         self.on_rail = True
         self._gust_pending = settings.environment.gust_speed != 0.0
         self._gust_time: float | None = None
         self._attended = True
+        self._left: int | None = None  # step at which it has left the rail
         self._datum = self.row
         self.aloft = True
         self.failure = ""
@@ -149,8 +155,9 @@ class JsbsimPlant:
         self._functions = airframe.checked.functions
         fdm = load_airframe(airframe)
         fdm.set_dt(self.dt)
-        for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
-            fdm.set_property_value(f"simulation/integrator/{name}/rotational", 3.0)
+        fdm.set_property_value("simulation/integrator/position/rotational", TWO_STEPS)
+        for name in RATES_BY:
+            fdm.set_property_value(name, MEAN_OF_STEP)
         return fdm
 
     def _node(self, name: str) -> FGPropertyNode:
@@ -239,10 +246,11 @@ class JsbsimPlant:
             s.launcher,
             mass=self.row[INDEX["mass"]] * SLUG,
             roll_inertia=self._value("inertia/ixx-slugs_ft2") * SLUG_FT2,
-            gravity=self._value("accelerations/gravity-ft_sec2") * FT,
+            gravity=self._gravity,
             front=front,
             rear=rear,
             release_time=s.release_time,
+            step=self.dt,
             force_factor=s.force_factor,
         )
 
@@ -300,23 +308,47 @@ class JsbsimPlant:
         """Look after what is not always there: the rail, and a gust that waits for the wing."""
         if self.on_rail:
             self._hold(self.t)
+        elif self._left is not None:
+            self._fly_free(self._left)
         if self._gust_pending:
             self._watch_for_gust()
-        self._attended = self.on_rail or self._gust_pending
+        self._attended = self.on_rail or self._left is not None or self._gust_pending
 
     def _hold(self, time: float) -> None:
+        """Set the rail's forces: JSBSim takes them in at the end of the coming step, and they act in the one after."""
+        ahead = 1.5 * self.dt
+        forces = self.rail.forces(time + ahead, self._motion(ahead), self._shoe_offsets(self.row))
+        self._push(forces)
+        if not self.rail.active:
+            self.on_rail, self._left = False, self.k
+
+    def _fly_free(self, left: int) -> None:
+        """Integrate in two steps again once neither of the two has a force of the rail in it."""
+        if self.k >= left + 2:
+            for name in RATES_BY:
+                self._set(name, TWO_STEPS)
+            self._left = None
+
+    def _motion(self, ahead: float) -> Motion:
+        """Return the motion `ahead` of the present, s, from the present accelerations."""
         row = self.row
         north, east, altitude, vn, ve, vd = MOTION(row)
         north0, east0, altitude0, *_ = MOTION(self._datum)
-        motion = Motion(
-            ((north - north0) * FT, (east - east0) * FT, (altitude0 - altitude) * FT),
-            (vn * FT, ve * FT, vd * FT),
-            ATTITUDE(row),
-            RATES(row),
+        fx, fy, fz, mass, _, _, _, p, q, r, p_dot, q_dot, r_dot = row[FELT]
+        x, y, z = body_axes(ATTITUDE(row))
+        pull = self._gravity / FT
+        an, ae, ad = ((fx * x[i] + fy * y[i] + fz * z[i]) / mass + (pull if i == 2 else 0.0) for i in range(3))
+        half = 0.5 * ahead
+        return Motion(
+            (
+                (north - north0 + ahead * (vn + half * an)) * FT,
+                (east - east0 + ahead * (ve + half * ae)) * FT,
+                (altitude0 - altitude + ahead * (vd + half * ad)) * FT,
+            ),
+            ((vn + ahead * an) * FT, (ve + ahead * ae) * FT, (vd + ahead * ad) * FT),
+            turned(ATTITUDE(row), (p + half * p_dot, q + half * q_dot, r + half * r_dot), ahead),
+            (p + ahead * p_dot, q + ahead * q_dot, r + ahead * r_dot),
         )
-        forces = self.rail.forces(time, motion, self._shoe_offsets(row))
-        self.on_rail = self.rail.active
-        self._push(forces if self.on_rail else FREE)
 
     def _push(self, f: RailForces) -> None:
         values = (f.axial, f.front_normal, f.front_lateral, f.rear_normal, f.rear_lateral, f.roll_moment)
