@@ -26,6 +26,7 @@ from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
 from numpy.typing import NDArray
 
 from uavsim import airdata
+from uavsim.plants import held
 from uavsim.plants.airframe import Airframe
 from uavsim.plants.airframe.figures import of_inertia
 from uavsim.plants.columns import (
@@ -146,6 +147,7 @@ class JsbsimPlant:
         self._ground = settings.environment.ground_elevation / FT
         self._offsets = (self._lever(self.row),) * 3  # of the sensor from the centre of gravity, newest first
         self._still = True
+        self._acted: Vector | None = self._felt(self.row)  # specific force that acts from the last row on; on the rail
         self._record(self.row)
 
     # -- setting up --------------------------------------------------------------------------------------------------
@@ -212,9 +214,7 @@ class JsbsimPlant:
     def _check_body(self) -> None:
         """Refuse a body that cannot be, as JSBSim has it with all that was set: mass, inertia, size."""
         mass = self._value("inertia/mass-slugs") * SLUG
-        moments = [
-            self._value(f"inertia/i{axes}-slugs_ft2") * SLUG_FT2 for axes in ("xx", "yy", "zz", "xy", "xz", "yz")
-        ]
+        moments = self._inertia()
         sizes = [self._value(f"metrics/{name}") for name in ("bw-ft", "cbarw-ft", "Sw-sqft")]
         if not (0.0 < mass < inf and all(map(isfinite, moments)) and all(0.0 < size < inf for size in sizes)):
             raise ValueError("aircraft.model: its mass, span, chord and wing area must be above 0, its inertia finite")
@@ -239,13 +239,20 @@ class JsbsimPlant:
         forward, right, down = self.settings.accelerometer_position
         return x - forward / INCH, y + right / INCH, z - down / INCH
 
+    def _inertia(self) -> list[float]:
+        """Return the tensor of inertia about the centre of gravity: xx, yy, zz, xy, xz, yz, kg m²."""
+        return [self._value(f"inertia/i{axes}-slugs_ft2") * SLUG_FT2 for axes in ("xx", "yy", "zz", "xy", "xz", "yz")]
+
     def _rail(self) -> Rail:
         s = self.settings
         front, rear = self._shoe_offsets(self.row)
+        mass, inertia = self.row[INDEX["mass"]] * SLUG, self._inertia()
+        if problem := held.problem(mass, inertia, front, rear, s.step_rate):
+            raise ValueError(problem)
         return Rail(
             s.launcher,
-            mass=self.row[INDEX["mass"]] * SLUG,
-            roll_inertia=self._value("inertia/ixx-slugs_ft2") * SLUG_FT2,
+            mass=mass,
+            roll_inertia=inertia[0],
             gravity=self._gravity,
             front=front,
             rear=rear,
@@ -301,8 +308,16 @@ class JsbsimPlant:
 
     def _record(self, row: Row) -> None:
         self.force = self._felt(row)
+        if self._acted is not None:
+            self._centre(self._acted)
         ROW.pack_into(self._buffer, self._size, *row, self.rail.push, *self.force)
         self._size += ROW.size
+
+    def _centre(self, acted: Vector) -> None:
+        """On the rail a row's forces are the mean of the step that follows it: at its own time is the mean of two."""
+        now = self.force
+        self.force = (0.5 * (acted[0] + now[0]), 0.5 * (acted[1] + now[1]), 0.5 * (acted[2] + now[2]))
+        self._acted = now
 
     def _attend(self) -> None:
         """Look after what is not always there: the rail, and a gust that waits for the wing."""
@@ -327,7 +342,7 @@ class JsbsimPlant:
         if self.k >= left + 2:
             for name in RATES_BY:
                 self._set(name, TWO_STEPS)
-            self._left = None
+            self._left = self._acted = None
 
     def _motion(self, ahead: float) -> Motion:
         """Return the motion `ahead` of the present, s, from the present accelerations."""

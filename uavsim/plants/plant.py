@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 
 Vector = tuple[float, float, float]
+STEP_RATES = (1000, 2000, 4000, 8000)  # Hz, steps a second that a plant may take: whoever flies at one can halve it
 Commands = tuple[float, float, float, float, float]
 """Wing (0 folded, 1 out), throttle (0 … 1), pitch and roll, rad, stabiliser engaged (0, 1)."""
 
@@ -92,7 +93,7 @@ class Run:
     release_time: float
     force_factor: float = 1.0
     random_seed: int = 1
-    step_rate: float = 1000.0
+    step_rate: float = STEP_RATES[0]
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)
     accelerometer_position: Vector = (0.0, 0.0, 0.0)
 
