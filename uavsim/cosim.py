@@ -29,7 +29,7 @@ from uavsim.onboard.launch.guarded import STATE, GuardedDetector
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import STEP_RATES, Plant, Run
 from uavsim.scenario import Scenario, load_scenario, with_kinds
-from uavsim.score import Judged, score
+from uavsim.score import TOUCHED, Judged, score, touchdown
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
@@ -248,7 +248,7 @@ class Cosimulation:
             step()
             t = plant.t
             if not plant.aloft:
-                self.ended = "crashed" if plant.finite else "diverged"
+                self.ended = TOUCHED if plant.finite else "diverged"
                 return
             force = felt(plant.force)
             if feel is not None:
@@ -304,6 +304,7 @@ def plant_settings(scenario: Scenario, draws: Draws) -> Run:
         step_rate=scenario.plant.step_rate,
         aircraft=scenario.aircraft,
         accelerometer_position=scenario.accelerometer.position,
+        head_position=scenario.air_data.position,
     )
 
 
@@ -417,7 +418,7 @@ def _flight(simulation: Cosimulation) -> Flight:
         simulation.ended,
         _versions(),
     )
-    reason = simulation.reason or plant.failure
+    reason = simulation.reason or plant.failure or (touchdown(judged) if simulation.ended == TOUCHED else "")
     result = score(judged) | ({"reason": reason} if reason else {})
     record = frame("truth", {**truth, "phase": judged.phases()})
     return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)

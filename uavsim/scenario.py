@@ -44,8 +44,9 @@ if TYPE_CHECKING:
 
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
 Outcome = Literal[
-    "cruise", "missed_launch", "false_launch", "crashed", "diverged", "onboard_failed", "timeout", "completed"
-]
+    "cruise", "missed_launch", "false_launch", "crashed", "landed", "diverged", "onboard_failed", "timeout",
+    "completed",
+]  # fmt: skip
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."

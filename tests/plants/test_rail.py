@@ -19,13 +19,14 @@ MASS, INERTIA, G = 8.0, 0.05, 9.81
 FRONT, REAR = (0.25, 0.0, 0.08), (-0.15, 0.0, 0.08)  # m from the centre of gravity
 ELEVATION = 12.5
 RELEASE = 2.0
+INSTANT = 1e-7  # s, a step over which nothing changes
 SETTINGS = LauncherSettings(elevation_deg=ELEVATION)
 UPRIGHT = (0.0, radians(ELEVATION), 0.0)
 
 
 def rail(**changes: Any) -> Rail:
-    more = {key: changes.pop(key) for key in ("front", "rear", "force_factor") if key in changes}
-    known = {"front": FRONT, "rear": REAR, **more}
+    more = {key: changes.pop(key) for key in ("front", "rear", "force_factor", "step") if key in changes}
+    known = {"front": FRONT, "rear": REAR, "step": INSTANT, **more}
     return Rail(replace(SETTINGS, **changes), mass=MASS, roll_inertia=INERTIA, gravity=G, release_time=RELEASE, **known)
 
 

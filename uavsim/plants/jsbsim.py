@@ -16,7 +16,7 @@ import ctypes
 import re
 from collections.abc import Callable
 from difflib import get_close_matches
-from math import inf, isfinite, pi, radians
+from math import atan2, cos, inf, isfinite, pi, radians, sin, sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -31,12 +31,10 @@ from uavsim.plants.airframe import Airframe
 from uavsim.plants.airframe.figures import of_inertia
 from uavsim.plants.columns import (
     AIR,
-    AIR_OFFSET,
     ALTITUDE,
     ATTITUDE,
     CENTRE,
     FELT,
-    FLOW,
     FT,
     INCH,
     INDEX,
@@ -45,11 +43,11 @@ from uavsim.plants.columns import (
     OWN,
     PSF,
     RANKINE,
-    RATES,
     RAW,
     ROW,
     SLUG,
     SLUG_FT2,
+    STREAM,
     WING,
 )
 from uavsim.plants.hangar import find_airframe, is_packaged
@@ -59,6 +57,10 @@ from uavsim.plants.settings import AircraftSettings
 
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
 WING_OUT = 0.99
+
+STILL = 1e-6  # m/s of airspeed, below which its quotient with the Mach number is not taken for the speed of sound
+BEYOND = 1e4  # m/s beside the centre of gravity: nothing turns like that, and the flight is about to diverge
+CONTACT = re.compile(r"(gear|contact)/unit(\[\d+\])?/WOW")  # whether a wheel or another point of it is on the ground
 
 RATES_BY = ("simulation/integrator/rate/rotational", "simulation/integrator/rate/translational")
 MEAN_OF_STEP = 1.0  # rectangular: an acceleration acts for the step after it, so the rail gives the mean over that
@@ -93,7 +95,8 @@ class JsbsimPlant:
     on_rail
         Whether a shoe is still on the rail.
     aloft
-        Whether the altitude is a number and above the ground.
+        Whether the altitude of the centre of gravity is a number and above the ground, and off the rail none of the
+        points of contact that the aircraft has touches it.
     failure
         What JSBSim said when it could not go on; empty as long as it can.
 
@@ -114,7 +117,9 @@ class JsbsimPlant:
         self._run: Callable[[], bool] = self._fdm.run
         self._nodes = [self._node(name) for name, _ in RAW.values()]
         self._commands = [self._node(name) for name in _COMMANDS]
-        self._eye = self._accelerometer()
+        self._eye = self._place_of(settings.accelerometer_position)
+        self._head = self._place_of(settings.head_position)
+        self._contacts = [self._node(name) for name in self._catalogue if CONTACT.fullmatch(name)]
         self._forces = [
             (self._node(f"external_reactions/{name}"), unit)
             for name, unit in (
@@ -233,10 +238,10 @@ class JsbsimPlant:
                 raise ValueError(f"{where} is read-only in JSBSim")
             self._set(name, value)
 
-    def _accelerometer(self) -> Vector:
-        """Place of the accelerometer in structural axes (x aft, y right, z up), inches."""
+    def _place_of(self, position: Vector) -> Vector:
+        """Place of a sensor in structural axes (x aft, y right, z up), inches."""
         x, y, z = (self._value(f"metrics/eyepoint-{axis}-in") for axis in "xyz")
-        forward, right, down = self.settings.accelerometer_position
+        forward, right, down = position
         return x - forward / INCH, y + right / INCH, z - down / INCH
 
     def _inertia(self) -> list[float]:
@@ -293,6 +298,8 @@ class JsbsimPlant:
         self.row = row = self._read()
         self._record(row)
         self.aloft = row[ALTITUDE] > self._ground and not self.failure  # false too for NaN
+        if self._contacts and not self.on_rail:
+            self.aloft = self.aloft and not any(map(FGPropertyNode.get_double_value, self._contacts))
 
     def step_unrecorded(self) -> None:
         """Advance by one step of bare JSBSim: the measure that recording is compared with."""
@@ -438,25 +445,47 @@ class JsbsimPlant:
         )
 
     def air(self, time: float) -> Vector:
-        """Total pressure, static pressure, Pa, and temperature, K, at any recorded `time`, linear within a step."""
+        """Total, static pressure, Pa, and temperature, K, at the head at any recorded `time`, linear within a step."""
         steps = time * self.settings.step_rate
         k = int(steps)
         if k >= self.k:
             k = self.k - 1
         share = steps - k
-        at = k * ROW.size + AIR_OFFSET
-        mach0, static0, temperature0 = AIR.unpack_from(self._buffer, at)
-        mach, static, temperature = AIR.unpack_from(self._buffer, at + ROW.size)
+        before = ROW.unpack_from(self._buffer, k * ROW.size)
+        after = ROW.unpack_from(self._buffer, (k + 1) * ROW.size)
+        static0, temperature0, _ = AIR(before)
+        static, temperature, _ = AIR(after)
+        mach0, mach = self._stream(before)[0], self._stream(after)[0]
         static = (static0 + share * (static - static0)) * PSF
         total = airdata.isentropic_total(static, mach0 + share * (mach - mach0))
         return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
 
     def flow(self) -> tuple[float, float, float, float, float, float, float]:
-        """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
-        static, temperature, mach, alpha, beta, throttle = FLOW(self.row)
+        """At the head total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad; throttle: now."""
+        static, temperature, throttle = AIR(self.row)
+        mach, alpha, beta = self._stream(self.row)
         static *= PSF
         total = airdata.isentropic_total(static, mach)
         return total, static, temperature * RANKINE, mach, alpha, beta, throttle
+
+    def _stream(self, row: Row) -> Vector:
+        """Mach number, alpha and beta, rad, at the head: it moves with ω × r beside the centre of gravity."""
+        speed, mach, alpha, beta = STREAM(row)
+        _, _, _, _, cx, cy, cz, p, q, r, _, _, _ = row[FELT]
+        head = self._head
+        x, y, z = (cx - head[0]) * INCH, (head[1] - cy) * INCH, (cz - head[2]) * INCH
+        du, dv, dw = q * z - r * y, r * x - p * z, p * y - q * x
+        if not 0.0 < du * du + dv * dv + dw * dw < BEYOND**2:
+            return mach, alpha, beta
+        speed *= FT
+        ahead = speed * cos(beta)
+        u, v, w = ahead * cos(alpha) + du, speed * sin(beta) + dv, ahead * sin(alpha) + dw
+        there = sqrt(u * u + v * v + w * w)
+        if speed > STILL:
+            mach *= there / speed
+        else:
+            mach = there / airdata.speed_of_sound(row[INDEX["temperature"]] * RANKINE)
+        return mach, atan2(w, u), atan2(v, sqrt(u * u + w * w))
 
     @property
     def finite(self) -> bool:
