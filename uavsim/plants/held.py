@@ -73,8 +73,9 @@ def _per_inertia(mass: float, inertia: Sequence[float], front: Vector, rear: Vec
             shoes += 0.5 * mass * np.outer(moved, moved)
     rolled = np.diag([0.0, 0.0, xx, 0.0, 0.0])
     contact, roll = 2.0 * pi * CONTACT_FREQUENCY, 2.0 * pi * ROLL_FREQUENCY
-    springs: Array = np.linalg.solve(inertias, shoes * contact**2 + rolled * roll**2)
-    dampers: Array = np.linalg.solve(inertias, 2.0 * DAMPING_RATIO * (shoes * contact + rolled * roll))
+    inverse = np.linalg.inv(inertias)
+    springs: Array = inverse @ (shoes * contact**2 + rolled * roll**2)
+    dampers: Array = inverse @ (2.0 * DAMPING_RATIO * (shoes * contact + rolled * roll))
     return springs, dampers
 
 
