@@ -26,6 +26,7 @@ from uavsim.truth import STANDARD_GRAVITY
 CONTACT_FREQUENCY = 40.0  # Hz, of the aircraft's mass on both shoes: stiff, and stable at a step of 1 ms
 ROLL_FREQUENCY = 15.0  # Hz, of the aircraft held in roll by the shoes' width; its small inertia allows no more at 1 ms
 DAMPING_RATIO = 0.7
+ROUNDING = 1e-9  # s, within which a step ends at the release
 CREEP_SPEED = 0.01  # m/s, below which friction fades to 0, so that a resting aircraft is not shaken
 
 Vector = tuple[float, float, float]
@@ -172,7 +173,7 @@ class Rail:
         """Mean force of the catapult over the step from `start`, s, of which it acts for the share `held`, N."""
         s, step = self.settings, self._step
         since = start - self.release_time
-        if since + step <= 0.0:
+        if since + step < ROUNDING:
             return 0.0
         if self._fall_start is None:
             left = s.stroke - self.travel - self._run_out - (speed - 0.5 * step * self._pushed) * s.fall
