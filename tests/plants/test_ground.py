@@ -3,6 +3,7 @@
 fw8 has no point of contact; here it gets a wheel under the nose and a bumper under the tail.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import hostile_aircraft as hostile
@@ -10,10 +11,11 @@ import numpy as np
 import pytest
 
 import uavsim
-from uavsim.cosim import replay
+from uavsim.cosim import Cosimulation, replay
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.plants.plant import Run
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
+from uavsim.scenario import load_scenario
 
 WHEEL = -0.3  # m, of the wheel and the bumper below the axis
 SHORT = ("launcher.wait_min=1.7", "launcher.wait_max=1.8", "duration=12", "requirements=[]")
@@ -97,6 +99,22 @@ def test_a_flight_that_falls_says_how_it_touched(own: bool, wheeled: Path) -> No
     )
     again = replay(flight)
     assert again.score == flight.score
+
+
+@pytest.mark.parametrize(("height", "outcome"), [(-4.0, "landed"), (-15.0, "crashed")])
+def test_an_aircraft_that_sinks_gently_has_landed(height: float, outcome: str) -> None:
+    """From level flight it is told to hold a height below the ground: the deeper, the steeper it comes down."""
+    flown = Cosimulation(load_scenario("catapult", overrides=["duration=30", "requirements=[]", f"expect={outcome}"]))
+    flown.advance(9000)
+    computer = flown.onboard.computer
+    computer.settings = replace(computer.settings, height=height)
+    flown.advance(flown.steps)
+    flight = flown.finish()
+    last = flight.truth.iloc[-1]
+    assert flight.score["outcome"] == outcome
+    assert (last["vd"] < 1.5) == (outcome == "landed")
+    assert -0.01 < last["altitude"] <= 0.0
+    assert f"with {last['vd']:.2f} m/s of sink" in flight.score["reason"]
 
 
 def test_a_flight_that_does_not_touch_has_no_reason() -> None:

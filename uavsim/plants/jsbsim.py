@@ -5,6 +5,9 @@ The only module that imports jsbsim. Facts it rests on:
 * In one `run()` JSBSim propagates the state first and evaluates forces with it last, so position, velocity, forces and
   angular acceleration read after a step all belong to its end. The non-gravitational force over mass is then the
   specific force at the centre of gravity without the one-step lag of JSBSim's own pilot accelerations.
+* For the same reason what is set before a `run()` acts in the step after the one that this makes. On the rail rates are
+  integrated rectangularly, an acceleration for one step, so the rail gives the mean force over that step (`rail`,
+  `held`); what is felt at a row's own time is then the mean of two rows. Off the rail both are of two steps again.
 * At the accelerometer, r from the centre of gravity, is felt besides  w' x r + w x (w x r) + 2 w x r' + r''. The last
   two act while the wing opens and the centre of gravity moves; they are backward differences of second order.
 * Nodes are looked up once. Each step's raw values are packed into one buffer; SI and derived columns are computed for
