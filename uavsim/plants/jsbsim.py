@@ -34,6 +34,7 @@ from uavsim.plants.airframe import Airframe
 from uavsim.plants.airframe.figures import of_inertia
 from uavsim.plants.columns import (
     AIR,
+    AIR_OFFSET,
     ALTITUDE,
     ATTITUDE,
     CENTRE,
@@ -43,6 +44,8 @@ from uavsim.plants.columns import (
     INDEX,
     LBF,
     MOTION,
+    OF_RECORD,
+    OF_ROW,
     OWN,
     PSF,
     RANKINE,
@@ -50,7 +53,7 @@ from uavsim.plants.columns import (
     ROW,
     SLUG,
     SLUG_FT2,
-    STREAM,
+    THROTTLE,
     WING,
 )
 from uavsim.plants.hangar import find_airframe, is_packaged
@@ -111,6 +114,7 @@ class JsbsimPlant:
 
     def __init__(self, settings: Run) -> None:
         self.settings = settings
+        self._rate = settings.step_rate
         self.dt = 1.0 / settings.step_rate
         self.k = 0
         self.t = 0.0
@@ -297,7 +301,7 @@ class JsbsimPlant:
             _leave_up(self._fdm)
             self.failure = _said(error, self.settings.aircraft.model)
         self.k += 1
-        self.t = self.k / self.settings.step_rate
+        self.t = self.k / self._rate
         self.row = row = self._read()
         self._record(row)
         self.aloft = row[ALTITUDE] > self._ground and not self.failure  # false too for NaN
@@ -311,7 +315,7 @@ class JsbsimPlant:
             self._attend()
         self._run()
         self.k += 1
-        self.t = self.k / self.settings.step_rate
+        self.t = self.k / self._rate
 
     def _read(self) -> Row:
         return tuple(map(FGPropertyNode.get_double_value, self._nodes))
@@ -448,47 +452,58 @@ class JsbsimPlant:
         )
 
     def air(self, time: float) -> Vector:
-        """Total, static pressure, Pa, and temperature, K, at the head at any recorded `time`, linear within a step."""
-        steps = time * self.settings.step_rate
+        """Total, static pressure, Pa, and temperature, K, at the head at any recorded `time`, linear within a step.
+
+        How much faster the head is than the centre of gravity is taken from the end of the step.
+        """
+        steps = time * self._rate
         k = int(steps)
         if k >= self.k:
             k = self.k - 1
         share = steps - k
-        before = ROW.unpack_from(self._buffer, k * ROW.size)
-        after = ROW.unpack_from(self._buffer, (k + 1) * ROW.size)
-        static0, temperature0, _ = AIR(before)
-        static, temperature, _ = AIR(after)
-        mach0, mach = self._stream(before)[0], self._stream(after)[0]
+        at = k * ROW.size
+        mach0, static0, temperature0 = AIR.unpack_from(self._buffer, at + AIR_OFFSET)
+        end = OF_RECORD.unpack_from(self._buffer, at + ROW.size)
+        _, mach, static, temperature, _, _, _, _, _, _, _, _ = end
         static = (static0 + share * (static - static0)) * PSF
-        total = airdata.isentropic_total(static, mach0 + share * (mach - mach0))
+        mach = mach0 + share * (mach - mach0)
+        if moves := self._beside(end):
+            mach += moves[0]
+        total = airdata.isentropic_total(static, mach)
         return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
 
     def flow(self) -> tuple[float, float, float, float, float, float, float]:
-        """At the head total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad; throttle: now."""
-        static, temperature, throttle = AIR(self.row)
-        mach, alpha, beta = self._stream(self.row)
+        """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
+        here = OF_ROW(self.row)
+        _, mach, static, temperature, _, _, _, _, _, _, alpha, beta = here
         static *= PSF
+        if moves := self._beside(here):
+            faster, u, v, w = moves
+            mach, alpha, beta = mach + faster, atan2(w, u), atan2(v, sqrt(u * u + w * w))
         total = airdata.isentropic_total(static, mach)
-        return total, static, temperature * RANKINE, mach, alpha, beta, throttle
+        return total, static, temperature * RANKINE, mach, alpha, beta, self.row[THROTTLE]
 
-    def _stream(self, row: Row) -> Vector:
-        """Mach number, alpha and beta, rad, at the head: it moves with ω × r beside the centre of gravity."""
-        speed, mach, alpha, beta = STREAM(row)
-        _, _, _, _, cx, cy, cz, p, q, r, _, _, _ = row[FELT]
+    def _beside(self, here: Row) -> tuple[float, float, float, float] | None:
+        """How the head moves, which has ω × r beside the centre of gravity, or nothing if it has none.
+
+        Returns
+        -------
+        tuple
+            Its Mach number less that of the centre of gravity, and its velocity in the air, body axes, m/s.
+        """
+        speed, mach, _, temperature, x, y, z, p, q, r, alpha, beta = here
         head = self._head
-        x, y, z = (cx - head[0]) * INCH, (head[1] - cy) * INCH, (cz - head[2]) * INCH
+        x, y, z = (x - head[0]) * INCH, (head[1] - y) * INCH, (z - head[2]) * INCH
         du, dv, dw = q * z - r * y, r * x - p * z, p * y - q * x
         if not 0.0 < du * du + dv * dv + dw * dw < BEYOND**2:
-            return mach, alpha, beta
+            return None
         speed *= FT
         ahead = speed * cos(beta)
         u, v, w = ahead * cos(alpha) + du, speed * sin(beta) + dv, ahead * sin(alpha) + dw
         there = sqrt(u * u + v * v + w * w)
         if speed > STILL:
-            mach *= there / speed
-        else:
-            mach = there / airdata.speed_of_sound(row[INDEX["temperature"]] * RANKINE)
-        return mach, atan2(w, u), atan2(v, sqrt(u * u + w * w))
+            return mach * (there - speed) / speed, u, v, w
+        return there / airdata.speed_of_sound(temperature * RANKINE) - mach, u, v, w
 
     @property
     def finite(self) -> bool:
