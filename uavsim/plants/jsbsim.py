@@ -454,7 +454,7 @@ class JsbsimPlant:
     def air(self, time: float) -> Vector:
         """Total, static pressure, Pa, and temperature, K, at the head at any recorded `time`, linear within a step.
 
-        How much faster the head is than the centre of gravity is taken from the end of the step.
+        How much faster the head is than the centre of gravity is taken from the nearest row.
         """
         steps = time * self._rate
         k = int(steps)
@@ -463,11 +463,10 @@ class JsbsimPlant:
         share = steps - k
         at = k * ROW.size
         mach0, static0, temperature0 = AIR.unpack_from(self._buffer, at + AIR_OFFSET)
-        end = OF_RECORD.unpack_from(self._buffer, at + ROW.size)
-        _, mach, static, temperature, _, _, _, _, _, _, _, _ = end
+        mach, static, temperature = AIR.unpack_from(self._buffer, at + ROW.size + AIR_OFFSET)
         static = (static0 + share * (static - static0)) * PSF
         mach = mach0 + share * (mach - mach0)
-        if moves := self._beside(end):
+        if moves := self._beside(OF_RECORD.unpack_from(self._buffer, at if share < 0.5 else at + ROW.size)):
             mach += moves[0]
         total = airdata.isentropic_total(static, mach)
         return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
