@@ -64,8 +64,11 @@ from uavsim.plants.settings import AircraftSettings
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
 WING_OUT = 0.99
 
-STILL = 1e-6  # m/s of airspeed, below which its quotient with the Mach number is not taken for the speed of sound
-BEYOND = 1e4  # m/s beside the centre of gravity: nothing turns like that, and the flight is about to diverge
+INCHES = 12.0  # in a foot
+STILL = 1e-4  # in/s of airspeed, below which its quotient with the Mach number is not taken for the speed of sound
+BEYOND = (
+    1e11  # (in/s)², 8 km/s beside the centre of gravity: nothing turns like that but what is about to diverge
+)
 CONTACT = re.compile(r"(gear|contact)/unit(\[\d+\])?/WOW")  # whether a wheel or another point of it is on the ground
 
 RATES_BY = ("simulation/integrator/rate/rotational", "simulation/integrator/rate/translational")
@@ -73,6 +76,7 @@ MEAN_OF_STEP = 1.0  # rectangular: an acceleration acts for the step after it, s
 TWO_STEPS = 3.0  # Adams-Bashforth of second order, in flight; the rectangular loses 2 % of a roll while the wings open
 
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
+GET = FGPropertyNode.get_double_value
 Row = tuple[float, ...]
 Array = NDArray[np.float64]
 
@@ -302,11 +306,11 @@ class JsbsimPlant:
             self.failure = _said(error, self.settings.aircraft.model)
         self.k += 1
         self.t = self.k / self._rate
-        self.row = row = self._read()
+        self.row = row = tuple(map(GET, self._nodes))
         self._record(row)
         self.aloft = row[ALTITUDE] > self._ground and not self.failure  # false too for NaN
         if self._contacts and not self.on_rail:
-            self.aloft = self.aloft and not any(map(FGPropertyNode.get_double_value, self._contacts))
+            self.aloft = self.aloft and not any(map(GET, self._contacts))
 
     def step_unrecorded(self) -> None:
         """Advance by one step of bare JSBSim: the measure that recording is compared with."""
@@ -318,7 +322,7 @@ class JsbsimPlant:
         self.t = self.k / self._rate
 
     def _read(self) -> Row:
-        return tuple(map(FGPropertyNode.get_double_value, self._nodes))
+        return tuple(map(GET, self._nodes))
 
     def _record(self, row: Row) -> None:
         self.force = self._felt(row)
@@ -488,21 +492,27 @@ class JsbsimPlant:
         Returns
         -------
         tuple
-            Its Mach number less that of the centre of gravity, and its velocity in the air, body axes, m/s.
+            Its Mach number less that of the centre of gravity, and its velocity in the air, body axes, in/s.
         """
         speed, mach, _, temperature, x, y, z, p, q, r, alpha, beta = here
-        head = self._head
-        x, y, z = (x - head[0]) * INCH, (head[1] - y) * INCH, (z - head[2]) * INCH
-        du, dv, dw = q * z - r * y, r * x - p * z, p * y - q * x
-        if not 0.0 < du * du + dv * dv + dw * dw < BEYOND**2:
+        a, b, c = self._head
+        x -= a  # ahead, to the right and down
+        y = b - y
+        z -= c
+        u = q * z - r * y
+        v = r * x - p * z
+        w = p * y - q * x
+        if not 0.0 < u * u + v * v + w * w < BEYOND:
             return None
-        speed *= FT
+        speed *= INCHES
         ahead = speed * cos(beta)
-        u, v, w = ahead * cos(alpha) + du, speed * sin(beta) + dv, ahead * sin(alpha) + dw
+        u += ahead * cos(alpha)
+        v += speed * sin(beta)
+        w += ahead * sin(alpha)
         there = sqrt(u * u + v * v + w * w)
         if speed > STILL:
             return mach * (there - speed) / speed, u, v, w
-        return there / airdata.speed_of_sound(temperature * RANKINE) - mach, u, v, w
+        return there * INCH / airdata.speed_of_sound(temperature * RANKINE) - mach, u, v, w
 
     @property
     def finite(self) -> bool:
