@@ -38,7 +38,7 @@ def problem(mass: float, inertia: Sequence[float], front: Vector, rear: Vector, 
     mass
         kg.
     inertia
-        About the centre of gravity: xx, yy, zz, xy, xz, yz, kg m².
+        About the centre of gravity, entries of the tensor: xx, yy, zz, xy, xz, yz, kg m².
     front, rear
         Shoes from the centre of gravity, body axes, m.
     step_rate
@@ -66,7 +66,7 @@ def _per_inertia(mass: float, inertia: Sequence[float], front: Vector, rear: Vec
     """Return stiffness and damping over inertia, M⁻¹ K and M⁻¹ C."""
     xx, yy, zz, xy, xz, yz = inertia
     inertias = np.diag([mass, mass, 0.0, 0.0, 0.0])
-    inertias[2:, 2:] = [[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]
+    inertias[2:, 2:] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
     shoes = np.zeros((5, 5))
     for x, y, _ in (front, rear):
         for moved in ([0.0, 1.0, y, -x, 0.0], [1.0, 0.0, 0.0, 0.0, x]):
