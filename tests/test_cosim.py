@@ -648,7 +648,7 @@ def test_a_crash_ends_the_flight_and_is_a_result() -> None:
     scenario = load_scenario("catapult")
     flight = flown(Cosimulation(scenario, plant=Deaf(plant_settings(scenario, draw(scenario)))))
     assert flight.score["outcome"] == "crashed"
-    assert flight.score["reason"].startswith(f"touched the ground at {column(flight, 'truth', 't')[-1]:.3f} s with ")
+    assert flight.score["reason"].startswith(f"touched the ground at {column(flight, 'truth', 't')[-1]:.2f} s: sink ")
     assert column(flight, "truth", "altitude")[-1] <= 0.0
     assert column(flight, "truth", "altitude")[:-1].min() > 0.0
     assert flight.score["flight"]["duration"] < 10.0

@@ -328,7 +328,7 @@ def test_outcome_is_the_first_that_applies(expected: str, flight: dict[str, Any]
 
 def test_how_it_touched_is_told_in_one_line() -> None:
     flight = made(ended="touched", end=3.0, change=touching(sink=2.345, roll=-12.34, pitch=6.78))
-    assert touchdown(flight) == "touched the ground at 3.000 s with 2.35 m/s of sink, roll -12.3°, pitch 6.8°"
+    assert touchdown(flight) == "touched the ground at 3.00 s: sink 2.35 m/s, roll -12°, pitch 7°"
 
 
 def test_expected_outcome_is_the_scenarios() -> None:

@@ -246,8 +246,8 @@ def touchdown(flight: Judged) -> str:
     """Say in one line how a flight touched the ground."""
     sink, roll, pitch = _at_touch(flight)
     return (
-        f"touched the ground at {flight.time[-1]:.3f} s with {sink:.2f} m/s of sink, roll {np.degrees(roll):.1f}°, "
-        f"pitch {np.degrees(pitch):.1f}°"
+        f"touched the ground at {flight.time[-1]:.2f} s: sink {sink:.2f} m/s, roll {np.degrees(roll):z.0f}°, "
+        f"pitch {np.degrees(pitch):z.0f}°"
     )
 
 

@@ -94,8 +94,8 @@ def test_a_flight_that_falls_says_how_it_touched(own: bool, wheeled: Path) -> No
     assert flight.score["outcome"] == "crashed"
     assert flight.score["flight"]["duration"] < 12.0
     assert flight.score["reason"] == (
-        f"touched the ground at {last['t']:.3f} s with {last['vd']:.2f} m/s of sink, "
-        f"roll {np.degrees(last['roll']):.1f}°, pitch {np.degrees(last['pitch']):.1f}°"
+        f"touched the ground at {last['t']:.2f} s: sink {last['vd']:.2f} m/s, "
+        f"roll {np.degrees(last['roll']):z.0f}°, pitch {np.degrees(last['pitch']):z.0f}°"
     )
     again = replay(flight)
     assert again.score == flight.score
@@ -114,7 +114,7 @@ def test_an_aircraft_that_sinks_gently_has_landed(height: float, outcome: str) -
     assert flight.score["outcome"] == outcome
     assert (last["vd"] < 1.5) == (outcome == "landed")
     assert -0.01 < last["altitude"] <= 0.0
-    assert f"with {last['vd']:.2f} m/s of sink" in flight.score["reason"]
+    assert f"sink {last['vd']:.2f} m/s" in flight.score["reason"]
 
 
 def test_a_flight_that_does_not_touch_has_no_reason() -> None:
