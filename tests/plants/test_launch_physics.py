@@ -180,6 +180,15 @@ def test_speed_and_tip_off_are_those_of_an_independent_integration(case: str) ->
     assert found.pitch - late * found.pitch_rate == pytest.approx(expected.pitch, abs=np.radians(0.003))
 
 
+@pytest.mark.parametrize("case", CASES)
+def test_nothing_of_the_rail_is_left_once_it_is_left(case: str) -> None:
+    """Without air it turns as it did in the first row off the rail, to 1e-4 of it: no force is taken twice, or late."""
+    plant, found = off_the_rail(CASES[case], Vacuum, 1000.0)
+    for _ in range(6):
+        plant.step()
+        assert plant.row[INDEX["q"]] == pytest.approx(found.pitch_rate, rel=1e-4)
+
+
 @pytest.mark.parametrize("kind", [JsbsimPlant, Vacuum])
 @pytest.mark.parametrize("case", CASES)
 def test_half_the_step_gives_the_same_launch(case: str, kind: type[JsbsimPlant]) -> None:

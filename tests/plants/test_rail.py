@@ -277,6 +277,18 @@ def test_a_shoe_that_leaves_within_a_step_holds_for_its_share_of_it(share: float
     assert rear.front_normal == 0.0
 
 
+@pytest.mark.parametrize("share", [0.25, 0.8, 1.0])
+def test_roll_is_held_as_long_as_a_shoe_is(share: float) -> None:
+    """Rolled and turning, with nothing to the side: of the step in which the rear shoe leaves it has its share."""
+    way, rolled = 0.04, (0.02, UPRIGHT[1], 0.0)
+    full, last = (
+        at(rail(step=4e-3), RELEASE + 0.1, where, 10.0, attitude=rolled, rates=(0.1, 0.0, 0.0)).roll_moment
+        for where in (1.0, SETTINGS.stroke + (0.5 - share) * way)
+    )
+    assert full < 0.0
+    assert last == pytest.approx(share * full)
+
+
 def test_the_push_ends_with_the_rail() -> None:
     """Whatever of it is left there: of the last step it has the share before the end."""
     box = rail(step=4e-3, friction=0.0)
