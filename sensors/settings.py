@@ -395,6 +395,9 @@ class AirDataSettings:
         Length of the mean that the tare is, s.
     cover_off : float
         Time before release at which the tare ends and the cover, if there is one, is taken off, s.
+    position : (x, y, z)
+        Of the head from the aircraft's EYEPOINT, body axes, m; its pressures come from the flow there. This is the tube
+        on the nose of fw8. A rig has its head where the stream is.
     """
 
     total: PressureSettings = field(default_factory=PressureSettings)
@@ -406,6 +409,7 @@ class AirDataSettings:
     total_port: TotalPortSettings = field(default_factory=TotalPortSettings)
     static_port: StaticPortSettings = field(default_factory=StaticPortSettings)
     pipe: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.0
+    position: tuple[Arm, Arm, Arm] = (0.65, 0.0, 0.0)
     acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
 

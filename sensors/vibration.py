@@ -6,9 +6,9 @@
 ξ is noise of unit rms with a flat spectrum in a band, independent on each axis; its rms is that of the phase: waiting
 on the rail, stroke, flight. The second term is the airframe ringing along body x: the push excites it as it rises to
 its plateau P, to the fraction c of it, and it decays from there. To these come tones and random vibration ζ_i of a
-given power spectral density, each always there or in one phase only. All noise repeats after 32 768 steps, without a
-seam; a tone is computed at the time of each step. Vibration is part of what is felt: it goes through the bandwidth and
-can alias.
+given power spectral density, each always there or in one phase only. All noise repeats after 32.768 s, without a
+seam, and is the same in time whatever the step; a tone is computed at the time of each step. Vibration is part of what
+is felt: it goes through the bandwidth and can alias.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,7 +24,7 @@ from sensors.spectrum import band_limited, check_psd, spectral
 from sensors.streams import Streams
 from sensors.unit import G0
 
-PERIOD = 32768  # steps after which the noise repeats, without a seam: 33 s at 1 kHz
+PERIOD = 32.768  # s after which the noise repeats, without a seam: 32 768 steps of 1 ms
 PHASES = ("waiting", "stroke", "flight")
 RING_DECAYS = 20  # the ring is dropped when it has fallen to e^-20 = 2e-9
 
@@ -81,7 +81,8 @@ class Vibration:
     ) -> None:
         check(settings, dt)
         self._dt = dt
-        self._unit = band_limited(streams("vibration"), PERIOD, dt, settings.band_hz, axes=3) * (scale * G0)
+        steps = round(PERIOD / dt)
+        self._unit = band_limited(streams("vibration"), steps, dt, settings.band_hz, axes=3) * (scale * G0)
         self._flight_rms = settings.flight_rms_g
         self._released = ceil(release_time / dt) if isfinite(release_time) else inf
         self._sources = _sources(settings, streams, dt, scale * G0)
@@ -153,9 +154,10 @@ def check(settings: VibrationSettings, dt: float) -> None:
 
 def _sources(settings: VibrationSettings, streams: Streams, dt: float, scale: float) -> tuple[Source, ...]:
     """Return the tones and the spectra."""
+    steps = round(PERIOD / dt)
     tones: list[Source] = [(tone.when, _sinusoid(tone, dt, scale)) for tone in settings.tones]
     spectra: list[Source] = [
-        (spectrum.when, _periodic(spectral(streams(f"vibration.spectrum.{i}"), PERIOD, dt, spectrum.psd, 3) * scale))
+        (spectrum.when, _periodic(spectral(streams(f"vibration.spectrum.{i}"), steps, dt, spectrum.psd, 3) * scale))
         for i, spectrum in enumerate(settings.spectra)
     ]
     return (*tones, *spectra)

@@ -35,7 +35,7 @@ PLACE = (
 RAIL = (
     "launcher.heading_deg=35", "launcher.elevation_deg=17", "launcher.peak_specific_force_g=9.5", "launcher.rise=0.021",
     "launcher.fall=0.043", "launcher.stroke=4.4", "launcher.height=2.6", "launcher.friction=0.06",
-    "launcher.force_spread=0.05", "launcher.wait_min=1.7", "launcher.wait_max=2.3",
+    "launcher.force_spread=0.05", "launcher.wait_min=1.7", "launcher.wait_max=2.3", "plant.step_rate=2000",
 )  # fmt: skip
 SHAKING = (
     "vibration.waiting_rms_g=0.09", "vibration.stroke_rms_g=0.6", "vibration.flight_rms_g=0.12",
@@ -52,7 +52,7 @@ MOUNTED = (
     "accelerometer.thermal.lag=20", "accelerometer.thermal.powered_for=5", "accelerometer.errors.scale=1.5",
 )  # fmt: skip
 TUBES = (
-    "air_data.rate=83", "air_data.tare_duration=0.7", "air_data.cover_off=0.4",
+    "air_data.position=[0.5,0.2,-0.1]", "air_data.rate=83", "air_data.tare_duration=0.7", "air_data.cover_off=0.4",
     "air_data.acceleration_sensitivity=true",
     'air_data.static.preset="ms5611"', 'air_data.static.mode="x1024/x1024"', "air_data.total.iir=2",
     "air_data.total.noise_scale=1.3", "air_data.static.noise_scale=0.8", "air_data.total.offset_pa=35",

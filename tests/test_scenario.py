@@ -99,6 +99,15 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
         ("accelerometer.range_g=4", "--set: detector.threshold = 45.11 m/s²: lsm6dso32 at ±4 g can never"),
         ("launcher.wait_max=1.7", "launcher.wait_max = 1.7: must be at least wait_min = 2 s"),
         ("launcher.wait_max=40", "duration = 35: must be longer than the longest wait"),
+        (
+            "plant.step_rate=500",
+            "plant.step_rate = 500: the springs of the rail (40 Hz, damping 0.7) do not survive it; must be one of "
+            "1000, 2000, 4000, 8000 Hz",
+        ),
+        ("plant.step_rate=0", "plant.step_rate = 0: the springs of the rail"),
+        ("plant.step_rate=3000", "plant.step_rate = 3000: must be one of 1000, 2000, 4000, 8000 Hz"),
+        ("plant.step_rate=16000", "plant.step_rate = 16000: must be one of"),
+        ("plant.step_rate=1000.5", "plant.step_rate = 1000.5: must be a whole number"),
         ("air_data.tare_duration=5", "must fit into the shortest wait, launcher.wait_min = 2 s"),
         ("air_data.cover_off=1.5", "air_data.tare_duration = 1 and cover_off = 1.5 s: must fit"),
         ("aircraft.model=fw9", "--set: aircraft.model: unknown aircraft 'fw9'; did you mean 'fw8'?"),
@@ -198,6 +207,16 @@ def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_a_name_with_a_line_end_in_it_does_not_break_the_line() -> None:
     assert "aircraft.properties.a b = 'x': must be a number" in complaint({"aircraft": {"properties": {"a\nb": "x"}}})
+
+
+@pytest.mark.parametrize(("rate", "longest"), [(1000, 3600), (2000, 1800), (8000, 450)])
+def test_a_flight_has_no_more_rows_of_truth_than_an_hour_at_1_khz(rate: int, longest: int) -> None:
+    sets = [f"plant.step_rate={rate}", "accelerometer.rate=104"]
+    load_scenario("catapult", overrides=[*sets, f"duration={longest}"])
+    if rate > 1000:
+        said = complaint(sets=[*sets, f"duration={longest + 1}"])
+        assert f"duration = {longest + 1}: at plant.step_rate = {rate} Hz it would give 3.6" in said
+        assert f"{longest} s can be flown" in said
 
 
 @pytest.mark.parametrize(("bias", "limit"), [("0.0", 298.71), ("5", 293.71), ("[0, 0, -5]", 293.71)])

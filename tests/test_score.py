@@ -12,7 +12,7 @@ import pytest
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.plants.choice import PlantSettings
 from uavsim.scenario import Scenario
-from uavsim.score import Judged, outcome, score
+from uavsim.score import Judged, outcome, score, touchdown
 from uavsim.truth import STANDARD_GRAVITY
 
 RELEASE, EXIT, WINGS, OUT, MOTOR, END = 2.0, 2.4, 2.52, 2.8, 2.77, 12.0
@@ -49,6 +49,8 @@ def made(
         "wing": np.clip((t - WINGS) / (OUT - WINGS) * 0.99, 0.0, 1.0),
         "airspeed": np.interp(t, [RELEASE, EXIT, 4.0], [0.0, 26.0, AIM]),
         "roll": np.zeros_like(t),
+        "pitch": np.zeros_like(t),
+        "vd": np.full_like(t, 3.0),
         "altitude": np.interp(t, [RELEASE, EXIT, END], [1.5, 2.5, 20.0]),
         "p_total": np.full_like(t, 101_000.0),
         "p_static": np.full_like(t, 100_500.0),
@@ -99,6 +101,16 @@ def holding(*changes: Callable[[dict[str, np.ndarray]], None]) -> Callable[[dict
     def change(truth: dict[str, np.ndarray]) -> None:
         for each in changes:
             each(truth)
+
+    return change
+
+
+def touching(sink: float = 1.0, roll: float = 0.0, pitch: float = 5.0) -> Callable[[dict[str, np.ndarray]], None]:
+    """Let the last row, and only that, be of an aircraft that touches the ground so; degrees."""
+
+    def change(truth: dict[str, np.ndarray]) -> None:
+        for name, value in (("vd", sink), ("roll", math.radians(roll)), ("pitch", math.radians(pitch))):
+            truth[name][-1] = value
 
     return change
 
@@ -278,7 +290,21 @@ def with_event(name: str, time: float | None) -> tuple[tuple[str, float], ...]:
         ("missed_launch", {"events": with_event("launch_detected", EXIT + 0.501)}),
         ("cruise", {"events": with_event("launch_detected", EXIT + 0.499)}),
         ("crashed", {"ended": "crashed"}),
-        ("crashed", {"ended": "crashed", "end": 3.0}),
+        ("crashed", {"ended": "touched", "end": 3.0}),
+        ("landed", {"ended": "touched", "end": 3.0, "change": touching(sink=1.49)}),
+        ("landed", {"ended": "landed", "end": 3.0, "change": touching(sink=1.49)}),
+        ("landed", {"ended": "touched", "change": touching(sink=-0.2)}),
+        ("crashed", {"ended": "touched", "change": touching(sink=1.51)}),
+        ("crashed", {"ended": "touched", "change": touching(sink=math.nan)}),
+        ("landed", {"ended": "touched", "change": touching(roll=-29.9)}),
+        ("crashed", {"ended": "touched", "change": touching(roll=-30.1)}),
+        ("crashed", {"ended": "touched", "change": touching(roll=179.0)}),
+        ("landed", {"ended": "touched", "change": touching(pitch=-4.9)}),
+        ("crashed", {"ended": "touched", "change": touching(pitch=-5.1)}),
+        ("landed", {"ended": "touched", "change": touching(pitch=19.9)}),
+        ("crashed", {"ended": "touched", "change": touching(pitch=20.1)}),
+        ("missed_launch", {"events": (), "ended": "touched", "change": touching()}),
+        ("false_launch", {"events": with_event("wings_commanded", 2.39), "ended": "touched", "change": touching()}),
         ("timeout", {"change": setting("airspeed", AIM - 2.01, 9.0, 9.001)}),
         ("timeout", {"change": setting("airspeed", AIM + 2.01, 9.0, 9.001)}),
         ("cruise", {"change": setting("airspeed", AIM - 1.99, 9.0, 9.001)}),
@@ -298,6 +324,11 @@ def with_event(name: str, time: float | None) -> tuple[tuple[str, float], ...]:
 )
 def test_outcome_is_the_first_that_applies(expected: str, flight: dict[str, Any]) -> None:
     assert outcome(made(**flight)) == expected
+
+
+def test_how_it_touched_is_told_in_one_line() -> None:
+    flight = made(ended="touched", end=3.0, change=touching(sink=2.345, roll=-12.34, pitch=6.78))
+    assert touchdown(flight) == "touched the ground at 3.00 s: sink 2.35 m/s, roll -12°, pitch 7°"
 
 
 def test_expected_outcome_is_the_scenarios() -> None:

@@ -28,16 +28,15 @@ from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
 from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
-from uavsim.plants.plant import Plant, Run
-from uavsim.scenario import PLANT_STEP, Scenario, load_scenario, with_kinds
-from uavsim.score import Judged, score
+from uavsim.plants.plant import STEP_RATES, Plant, Run
+from uavsim.scenario import Scenario, load_scenario, with_kinds
+from uavsim.score import TOUCHED, Judged, score, touchdown
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-STEP_RATE = 1.0 / PLANT_STEP  # Hz, 1000 exactly
 CHUNK = 500  # steps between two looks at the progress
 DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recorded
 DETECTOR_TRAIL = 0.1  # s after recognition until which it is
@@ -58,13 +57,16 @@ class Draws:
 
 
 def draw(scenario: Scenario, index: int = 0) -> Draws:
-    """Draw the launch of flight `index` of the campaign `scenario.seed`."""
+    """Draw the launch of flight `index` of the campaign `scenario.seed`.
+
+    The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch.
+    """
     streams = Streams(scenario.seed, index)
     launcher = scenario.launcher
     wait = streams("launcher.wait").uniform(launcher.wait_min, launcher.wait_max)
     spread = launcher.force_spread
     return Draws(
-        release_time=round(wait * STEP_RATE) / STEP_RATE,
+        release_time=round(wait * STEP_RATES[0]) / STEP_RATES[0],
         force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)),
         plant_seed=streams.integer("plant"),
         calibration=calibrated(scenario, streams),
@@ -186,11 +188,12 @@ class Cosimulation:
         self.plant = make_plant(scenario, self.draws) if plant is None else plant
         streams = Streams(scenario.seed, index)
         release = self.draws.release_time
+        self.dt = dt = 1.0 / scenario.plant.step_rate
         push = scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor
         self.vibration = Vibration(
             scenario.vibration,
             streams,
-            dt=1.0 / STEP_RATE,
+            dt=dt,
             release_time=release,
             plateau=push if scenario.plant.chosen.rings else 0.0,
             rise=scenario.launcher.rise,
@@ -201,19 +204,19 @@ class Cosimulation:
             air,
             streams,
             self.plant,
-            dt=1.0 / STEP_RATE,
+            dt=dt,
             covered_until=release - air.cover_off if air.tare == "covered" else -math.inf,
         )
         self.accelerometer = Accelerometer.from_settings(
             scenario.accelerometer,
             streams,
-            dt=1.0 / STEP_RATE,
+            dt=dt,
             surroundings=self.plant,
         )
         self.onboard = Onboard(scenario, release, self.draws.calibration)
         self.readings: list[float] = []  # flat: plain floats cost the collector nothing
         self.air_readings: list[float] = []
-        self.steps = round(scenario.duration * STEP_RATE)
+        self.steps = round(scenario.duration * scenario.plant.step_rate)
         self.ended = self.reason = ""
         with self._told():
             self._begin()
@@ -246,7 +249,7 @@ class Cosimulation:
             step()
             t = plant.t
             if not plant.aloft:
-                self.ended = "crashed" if plant.finite else "diverged"
+                self.ended = TOUCHED if plant.finite else "diverged"
                 return
             force = felt(plant.force)
             if feel is not None:
@@ -266,7 +269,7 @@ class Cosimulation:
                 plant.command(commands)
             if on_rail and not plant.on_rail:
                 on_rail = False
-                self.vibration.leave_rail(t + 1.0 / STEP_RATE)  # this step's has been felt
+                self.vibration.leave_rail(t + self.dt)  # this step's has been felt
         if plant.k >= self.steps:
             self.ended = "completed" if plant.finite else "diverged"
 
@@ -309,9 +312,10 @@ def plant_settings(scenario: Scenario, draws: Draws) -> Run:
         release_time=draws.release_time,
         force_factor=draws.force_factor,
         random_seed=draws.plant_seed,
-        step_rate=STEP_RATE,
+        step_rate=scenario.plant.step_rate,
         aircraft=scenario.aircraft,
         accelerometer_position=scenario.accelerometer.position,
+        head_position=scenario.air_data.position,
     )
 
 
@@ -425,7 +429,7 @@ def _flight(simulation: Cosimulation) -> Flight:
         simulation.ended,
         _versions(),
     )
-    reason = simulation.reason or plant.failure
+    reason = simulation.reason or plant.failure or (touchdown(judged) if simulation.ended == TOUCHED else "")
     result = score(judged) | ({"reason": reason} if reason else {}) | {"remarks": simulation.remarks}
     record = frame("truth", {**truth, "phase": judged.phases()})
     return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)

@@ -33,6 +33,8 @@ from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
 from uavsim.plants.choice import PlantSettings
 from uavsim.plants.hangar import find_aircraft, hangar
+from uavsim.plants.plant import STEP_RATES
+from uavsim.plants.rail import CONTACT_FREQUENCY, DAMPING_RATIO
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.plugins import PluginError, Source, check_options, find, of_class, plugged_in, source_of
 from uavsim.score_keys import NUMBERS
@@ -43,14 +45,15 @@ if TYPE_CHECKING:
 
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
 Outcome = Literal[
-    "cruise", "missed_launch", "false_launch", "crashed", "diverged", "onboard_failed", "timeout", "completed"
-]
+    "cruise", "missed_launch", "false_launch", "crashed", "landed", "diverged", "onboard_failed", "timeout",
+    "completed",
+]  # fmt: skip
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
 OPTIONS = ("detector.options.", "estimator.options.", "plant.options.")  # keys that a plug-in declares
 WEATHER = "environment.preset"
-PLANT_STEP = 1e-3  # s
+MOST_STEPS = 3_600_000  # of the plant in a flight, an hour at the coarsest step; their truth takes 2 GB
 MOST_READINGS = 6_000_000  # of one sensor in a flight, which take 1.4 GB and a minute
 NAME = r"(?!.*[\u115f\u1160\u3164\uffa0])[^\W_][\w .+-]{0,99}"  # without the letters of Unicode that have no ink
 
@@ -348,7 +351,8 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
     values = _with_weather(values)
     scenario = _with_plugins(_with_inputs(settings.read(Scenario, values), values))
     for check in (
-        _check_name, _check_properties, _check_times, _check_air, _check_sensors, _check_cost, _check_vibration,
+        _check_name, _check_properties, _check_step, _check_times, _check_air, _check_sensors, _check_cost,
+        _check_vibration,
         _check_directions, _check_faults, _check_detector,
     ):  # fmt: skip
         check(scenario)
@@ -458,6 +462,17 @@ def _check_properties(s: Scenario) -> None:
             )
 
 
+def _check_step(s: Scenario) -> None:
+    """Refuse steps that the rail's springs do not survive, and those that are no half of another."""
+    rate, rates = s.plant.step_rate, f"{', '.join(map(str, STEP_RATES))} Hz"
+    if rate in STEP_RATES:
+        return
+    coarse = f"the springs of the rail ({CONTACT_FREQUENCY:g} Hz, damping {DAMPING_RATIO:g}) do not survive it; "
+    raise SettingError(
+        f"plant.step_rate = {rate}: {coarse if rate < STEP_RATES[0] else ''}must be one of {rates}", "plant.step_rate"
+    )
+
+
 def _check_times(s: Scenario) -> None:
     launcher, air = s.launcher, s.air_data
     if launcher.wait_max < launcher.wait_min:
@@ -516,6 +531,14 @@ def _check_sensors(s: Scenario) -> None:
 
 def _check_cost(s: Scenario) -> None:
     """Refuse a flight of more readings than a computer holds."""
+    if s.duration * s.plant.step_rate > MOST_STEPS:
+        raise SettingError(
+            f"duration = {s.duration:g}: at plant.step_rate = {s.plant.step_rate} Hz it would give "
+            f"{s.duration * s.plant.step_rate:.3g} rows of truth, and {MOST_STEPS} are the most; "
+            f"{MOST_STEPS / s.plant.step_rate:g} s can be flown",
+            "duration",
+            "plant.step_rate",
+        )
     for key, part in _parts(s):
         rate = part.description().rate
         if s.duration * rate > MOST_READINGS:
@@ -532,7 +555,7 @@ def _check_vibration(s: Scenario) -> None:
     if low >= high:
         raise SettingError(f"vibration.band_hz = [{low:g}, {high:g}]: must be a band, low first", "vibration.band_hz")
     try:
-        check_vibration(s.vibration, PLANT_STEP)
+        check_vibration(s.vibration, 1.0 / s.plant.step_rate)
     except ValueError as error:
         raise SettingError(str(error), "vibration") from None
 

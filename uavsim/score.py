@@ -47,7 +47,11 @@ TRANSITION = 2.0  # s after the wing is out
 TRANSITION_FOLDED = 4.0  # s after the rail if the wing never comes out
 LAST = 5.0  # s at the end over which cruise is judged
 SPEED_TOLERANCE = 2.0  # m/s
-BANK_LIMIT = np.pi / 6.0  # rad
+BANK_LIMIT = np.pi / 6.0  # rad, in cruise, and of an aircraft that is upright
+SOFT = 1.5  # m/s of sink, below which an aircraft that touches the ground upright has landed
+NOSE_LOW, NOSE_HIGH = -np.pi / 36.0, np.pi / 9.0  # rad, -5° and 20°: below it goes on its nose, above on its tail
+TOUCHED = "touched"
+ON_GROUND = (TOUCHED, "crashed", "landed")  # how a flight ended that touched it, in the loop and as a record has it
 TWO_SIGMA = 1.959964  # standard normal quantile of 97.5 %
 HIDDEN = 2.0  # σ_V: an airspeed below it is below V*
 RUN = "run"  # the one phase of a rig
@@ -68,7 +72,8 @@ class Judged:
     release_time
         When the latch let go, s.
     ended
-        Why the loop stopped: 'completed', 'crashed', 'diverged' or 'onboard_failed'.
+        Why the loop stopped: 'completed', 'touched' (the ground), 'diverged' or 'onboard_failed'; of a record its
+        outcome.
     versions
         Of what was flown with.
     """
@@ -220,9 +225,30 @@ def outcome(flight: Judged) -> str:
     limit = np.inf if exit_time is None else exit_time + MISSED_AFTER
     if detected is None or detected > limit:
         return "missed_launch"
-    if flight.ended == "crashed":
-        return "crashed"
+    if flight.ended in ON_GROUND:
+        return "landed" if _lands(flight) else "crashed"
     return "cruise" if _cruises(flight) else "timeout"
+
+
+def _at_touch(flight: Judged) -> tuple[float, float, float]:
+    """Sink, m/s, roll and pitch, rad, of a flight's last row."""
+    sink, roll, pitch = (float(flight.truth(name)[-1]) for name in ("vd", "roll", "pitch"))
+    return sink, roll, pitch
+
+
+def _lands(flight: Judged) -> bool:
+    """Whether it has touched the ground as an aircraft that lands does: slowly, wings level, nose up."""
+    sink, roll, pitch = _at_touch(flight)
+    return sink < SOFT and abs(roll) < BANK_LIMIT and NOSE_LOW <= pitch <= NOSE_HIGH
+
+
+def touchdown(flight: Judged) -> str:
+    """Say in one line how a flight touched the ground."""
+    sink, roll, pitch = _at_touch(flight)
+    return (
+        f"touched the ground at {flight.time[-1]:.2f} s: sink {sink:.2f} m/s, roll {np.degrees(roll):z.0f}°, "
+        f"pitch {np.degrees(pitch):z.0f}°"
+    )
 
 
 def _cruises(flight: Judged) -> bool:

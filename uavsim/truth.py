@@ -7,10 +7,10 @@ force are in body axes (forward, right, down).
 
 UNITS: dict[str, str] = {
     "t": "s",
-    "airspeed": "m/s",  # true airspeed, relative to the air with its wind, gusts and turbulence
+    "airspeed": "m/s",  # of the centre of gravity relative to the air with its wind, gusts and turbulence
     "mach": "1",
     "p_static": "Pa",  # of the undisturbed air at the aircraft
-    "p_total": "Pa",  # isentropic, from p_static and mach
+    "p_total": "Pa",  # isentropic, from p_static and mach: at the centre of gravity, as alpha and beta
     "temperature": "K",  # static, of the air
     "fx": "m/s^2",  # specific force at the accelerometer: what an ideal one feels, without vibration
     "fy": "m/s^2",
@@ -35,7 +35,7 @@ UNITS: dict[str, str] = {
     "wing": "1",  # 0 folded, 1 out
     "throttle": "1",
     "rail_s": "m",  # way along the rail since rest; after the last shoe has left it keeps its value
-    "catapult_force": "N",
+    "catapult_force": "N",  # mean over the step that begins with the row
     "mean_wind_n": "m/s",  # of wind_n: the mean wind at the aircraft's height; the rest is turbulence and gusts
     "mean_wind_e": "m/s",
     "gust_n": "m/s",  # of wind_n: the gusts that the scenario sets
@@ -47,7 +47,12 @@ UNITS: dict[str, str] = {
 }
 """Name of each numeric truth column and its unit, in the order they are written; `phase` (text) follows."""
 
-FELT = ("fx", "fy", "fz", "p_static", "p_total", "temperature")
-"""The columns that sensors read. Nothing else of the truth may have any influence on what happens on board."""
+FELT = (
+    "fx", "fy", "fz", "p_static", "p_total", "temperature", "airspeed", "mach", "alpha", "beta", "p", "q", "r",
+)  # fmt: skip
+"""The columns that sensors read; what the head reads comes from the flow and the rates of turn.
+
+Nothing else of the truth may have any influence on what happens on board.
+"""
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3; the g in which launch levels are quoted

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from uavsim.plants.rail import CREEP_SPEED, FREE, Motion, Rail, RailForces, body_axes
+from uavsim.plants.rail import CREEP_SPEED, FREE, Motion, Rail, RailForces, body_axes, turned
 from uavsim.plants.settings import LauncherSettings
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -19,13 +19,14 @@ MASS, INERTIA, G = 8.0, 0.05, 9.81
 FRONT, REAR = (0.25, 0.0, 0.08), (-0.15, 0.0, 0.08)  # m from the centre of gravity
 ELEVATION = 12.5
 RELEASE = 2.0
+INSTANT = 1e-5  # s, a step over which hardly anything changes
 SETTINGS = LauncherSettings(elevation_deg=ELEVATION)
 UPRIGHT = (0.0, radians(ELEVATION), 0.0)
 
 
 def rail(**changes: Any) -> Rail:
-    more = {key: changes.pop(key) for key in ("front", "rear", "force_factor") if key in changes}
-    known = {"front": FRONT, "rear": REAR, **more}
+    more = {key: changes.pop(key) for key in ("front", "rear", "force_factor", "step") if key in changes}
+    known = {"front": FRONT, "rear": REAR, "step": INSTANT, **more}
     return Rail(replace(SETTINGS, **changes), mass=MASS, roll_inertia=INERTIA, gravity=G, release_time=RELEASE, **known)
 
 
@@ -139,7 +140,7 @@ def test_the_push_rises_stays_and_is_proportional_to_the_draw() -> None:
     plateau = 8.0 * 1.02 * MASS * STANDARD_GRAVITY
     for since, share in ((-0.5, 0.0), (0.0, 0.0), (0.003, 0.1), (0.015, 0.5), (0.030, 1.0), (0.1, 1.0)):
         at(box, RELEASE + since, 0.1)
-        assert box.push == pytest.approx(plateau * share, abs=1e-6 * plateau)
+        assert box.push == pytest.approx(plateau * share, abs=1e-4 * plateau)
 
 
 def test_the_push_falls_so_that_it_ends_with_the_stroke() -> None:
@@ -175,7 +176,7 @@ def test_the_push_begins_to_fall_where_what_is_left_is_the_way_of_its_fall(eleva
         level_pitch = (0.0, radians(elevation), 0.0)
         at(box, RELEASE + 0.5, 10.0 - before, speed, attitude=level_pitch)
         at(box, RELEASE + 0.5 + fall / 2.0, 10.0 - before + 0.1, speed, attitude=level_pitch)
-        assert box.push == pytest.approx(box.plateau * (0.5 if falls else 1.0), rel=1e-9)
+        assert box.push == pytest.approx(box.plateau * (0.5 if falls else 1.0), rel=1e-4)
 
 
 def test_a_stroke_without_room_for_its_rise_still_ends() -> None:
@@ -185,7 +186,7 @@ def test_a_stroke_without_room_for_its_rise_still_ends() -> None:
     assert box.push == pytest.approx(2.0 / 3.0 * box.plateau)
     at(box, RELEASE + 0.031, 0.55, 18.0)
     at(box, RELEASE + 0.061, 0.58, 18.0)
-    assert box.push == pytest.approx(0.5 * box.plateau)
+    assert box.push == pytest.approx(0.5 * box.plateau, rel=1e-3)
 
 
 # -- friction --------------------------------------------------------------------------------------------------------
@@ -225,5 +226,84 @@ def test_the_front_shoe_leaves_a_base_before_the_rear_one() -> None:
 
 def test_after_the_stroke_nothing_is_left() -> None:
     box = rail()
-    assert at(box, RELEASE + 0.1, SETTINGS.stroke, 10.0) == FREE
+    at(box, RELEASE + 0.1, SETTINGS.stroke - 1e-3, 10.0)
+    assert box.active
+    assert at(box, RELEASE + 0.1, SETTINGS.stroke + 1e-3, 10.0) == FREE
     assert (box.active, box.push) == (False, 0.0)
+
+
+# -- within a step ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("since", [-0.9, -0.4, 0.0, 0.3, 12.0, 29.5, 29.0, 40.0])
+def test_the_push_of_a_step_is_its_mean(since: float) -> None:
+    """Of min(t/rise, 1) from `since` to `since` + 1 ms after the release, by quadrature at 10 001 points to 1e-7."""
+    box = rail(step=1e-3)
+    at(box, RELEASE + 1e-3 * (since + 0.5), 0.1)
+    t = 1e-3 * np.linspace(since, since + 1.0, 10_001)
+    mean = 1e3 * np.trapezoid(np.clip(t / 0.030, 0.0, 1.0), t)
+    assert box.push == pytest.approx(box.plateau * mean, abs=1e-7 * box.plateau)
+
+
+@pytest.mark.parametrize("begins", [0.1, 0.5, 0.9])
+def test_the_push_begins_to_fall_within_a_step(begins: float) -> None:
+    """At a share of a step of 2 ms the way that is left is that of the fall: its mean is 1 - (1 - share)² dt/(2 fall).
+
+    To 3e-5: speed and acceleration make a parabola of the way within the step, which the rail takes for straight.
+    """
+    step, fall, speed = 2e-3, 0.06, 20.0
+    box = rail(step=step, fall=fall, stroke=10.0)
+    pushed = 8.0 * STANDARD_GRAVITY - G * sin(radians(ELEVATION))
+    there = 10.0 - speed * fall - (8.0 * STANDARD_GRAVITY / 3.0 - G * sin(radians(ELEVATION)) / 2.0) * fall**2
+    late = (0.5 - begins) * step  # of the step's middle, behind the corner
+    middle = there + speed * late + 0.5 * pushed * late**2
+    at(box, RELEASE + 0.5, middle, speed + pushed * late)
+    assert box.push == pytest.approx(box.plateau * (1.0 - (1.0 - begins) ** 2 * step / (2.0 * fall)), rel=3e-5)
+    at(box, RELEASE + 0.5 + step, middle + step * speed, speed)
+    assert box.push == pytest.approx(box.plateau * (1.0 - (1.5 - begins) * step / fall), rel=6e-5)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.8, 1.0])
+def test_a_shoe_that_leaves_within_a_step_holds_for_its_share_of_it(share: float) -> None:
+    """10 m/s and 4 ms are 40 mm of way; what is left of the rail at the beginning of the step is a share of them."""
+    way, base = 0.04, FRONT[0] - REAR[0]
+    full = at(rail(step=4e-3), RELEASE + 0.1, 1.0, 10.0, side=1e-3)
+    front = at(rail(step=4e-3), RELEASE + 0.1, SETTINGS.stroke - base + (0.5 - share) * way, 10.0, side=1e-3)
+    rear = at(rail(step=4e-3, fall=1e-3), RELEASE + 0.1, SETTINGS.stroke + (0.5 - share) * way, 10.0, side=1e-3)
+    assert front.front_normal == pytest.approx(share * full.front_normal, rel=1e-9, abs=1e-9)
+    assert front.front_lateral == pytest.approx(share * full.front_lateral, rel=1e-9, abs=1e-9)
+    assert front.rear_normal == pytest.approx(full.rear_normal)
+    assert rear.rear_normal == pytest.approx(share * full.rear_normal, rel=1e-9, abs=1e-9)
+    assert rear.front_normal == 0.0
+
+
+@pytest.mark.parametrize("share", [0.25, 0.8, 1.0])
+def test_roll_is_held_as_long_as_a_shoe_is(share: float) -> None:
+    """Rolled and turning, with nothing to the side: of the step in which the rear shoe leaves it has its share."""
+    way, rolled = 0.04, (0.02, UPRIGHT[1], 0.0)
+    full, last = (
+        at(rail(step=4e-3), RELEASE + 0.1, where, 10.0, attitude=rolled, rates=(0.1, 0.0, 0.0)).roll_moment
+        for where in (1.0, SETTINGS.stroke + (0.5 - share) * way)
+    )
+    assert full < 0.0
+    assert last == pytest.approx(share * full)
+
+
+def test_the_push_ends_with_the_rail() -> None:
+    """Whatever of it is left there: of the last step it has the share before the end."""
+    box = rail(step=4e-3, friction=0.0)
+    at(box, RELEASE + 0.1, 1.0, 10.0)
+    assert box.push == pytest.approx(box.plateau)
+    at(box, RELEASE + 0.2, SETTINGS.stroke - 0.25 * 0.04, 10.0)  # three quarters of 40 mm are left
+    t = np.linspace(0.0, 3e-3, 1001)
+    mean = np.trapezoid(1.0 - t / 0.060, t) / 4e-3
+    assert box.push == pytest.approx(box.plateau * mean, rel=1e-6)
+
+
+def test_angles_turn_as_a_body_does() -> None:
+    """The rotation that the rates give, R' = R [ω]×, against the axes of the turned angles, to second order in time."""
+    attitude, rates, time = (0.3, -0.4, 1.1), (0.7, -0.9, 0.5), 1e-5
+    before, after = (np.array(body_axes(a)).T for a in (attitude, turned(attitude, rates, time)))
+    p, q, r = rates
+    cross = np.array([[0.0, -r, q], [r, 0.0, -p], [-q, p, 0.0]])
+    assert (after - before) / time == pytest.approx(before @ cross, abs=1e-4)

@@ -209,6 +209,7 @@ NOT_YET = {
     "accelerometer.errors.drift_model": "one deviation stands for either way to wander",
     "accelerometer.errors.saturation": "a reading at the range's end is still taken for a measurement",
     "accelerometer.position": "the lever arm's share of the force is not known on board",
+    "air_data.position": "how the head moves beside the centre of gravity is not known on board",
     "accelerometer.rate_error_percent": CLOCK,
     "accelerometer.jitter": CLOCK,
     "accelerometer.delay_jitter": "its noise, the force's slope times it, counts in the stroke alone",

@@ -93,6 +93,20 @@ def test_band_beyond_the_plant_is_an_error():
         _make(VibrationSettings(band_hz=(5.0, 500.0)))
 
 
+@pytest.mark.parametrize("spectra", [(), (Spectrum(((20.0, 1e-3), (300.0, 1e-3))),)])
+def test_the_noise_is_the_same_in_time_at_every_step(spectra):
+    """Its lines have the same frequencies and draws: at 4 kHz every fourth row is that at 1 kHz, to 1e-9 m/s²."""
+    settings = VibrationSettings(band_hz=(20.0, 200.0), spectra=spectra)
+    coarse, fine = (
+        Vibration(settings, Streams(3), dt=dt, release_time=0.5, plateau=80.0, rise=0.03) for dt in (DT, DT / 4)
+    )
+    rows = _take(fine, 4 * 900)[::4]
+    assert rows == pytest.approx(_take(coarse, 900), abs=1e-9)
+    fine.leave_rail(0.9)
+    coarse.leave_rail(0.9)
+    assert _take(fine, 4 * 100)[::4] == pytest.approx(_take(coarse, 100), abs=1e-9)
+
+
 # -- tones and spectra -----------------------------------------------------------------------------------------------
 
 STILL = VibrationSettings(waiting_rms_g=0.0, stroke_rms_g=0.0, flight_rms_g=0.0, ring_fraction=0.0)

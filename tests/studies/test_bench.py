@@ -65,7 +65,7 @@ def test_a_tape_that_acts_a_step_late_is_another_flight() -> None:
 
 def test_a_flight_that_ends_early_is_not_measured() -> None:
     crashing = load_scenario("weak-launch", overrides=["duration=10"])
-    with pytest.raises(ValueError, match=r"weak-launch: the flight crashed at .* nothing to compare"):
+    with pytest.raises(ValueError, match=r"weak-launch: the flight ends at .* \(touched\); nothing to compare"):
         measure(crashing, progress=lambda _: None)
 
 

@@ -154,6 +154,20 @@ def test_a_flown_launch_is_detected_when_it_is_in_flight() -> None:
     assert found.min() - 0.002 <= own["latency"] <= found.max() + 0.002
 
 
+def test_a_flown_launch_at_half_the_step_is_the_same_launch() -> None:
+    """Same units at the same times, truth to a step; readings to 0.1 g rms, for vibration is linear between steps."""
+    coarse, fine = (
+        Flown(load_scenario("catapult", overrides=[f"plant.step_rate={rate}"]), flights=1).read(3, 0, 2)
+        for rate in (1000, 2000)
+    )
+    assert np.array_equal(coarse.start, fine.start)
+    assert fine.truths[0].onset == pytest.approx(coarse.truths[0].onset, abs=1.1e-3)
+    assert fine.truths[0].end == pytest.approx(coarse.truths[0].end, abs=1.1e-3)
+    for one, other in zip(coarse.force, fine.force, strict=True):
+        assert one.shape == other.shape
+        assert np.sqrt(np.mean((one - other) ** 2, axis=0)).max() < 0.98
+
+
 # -- sweeps ----------------------------------------------------------------------------------------------------------
 
 

@@ -23,7 +23,7 @@ from uavsim.studies.batch import Batch, ErrorTrace, _flat
 from uavsim.truth import STANDARD_GRAVITY
 from uavsim.views import batch, launch, plots, pressure, trajectory
 from uavsim.views.curves import thin
-from uavsim.views.figure import PHASES, make_room, sheet
+from uavsim.views.figure import BLUE, PHASES, RED, make_room, sheet
 from uavsim.views.marks import Mark, flags, stack
 from uavsim.views.record import Record
 
@@ -216,6 +216,17 @@ def test_height_is_exaggerated_by_as_much_as_is_said(flight: Flight) -> None:
         assert bottom < 0.0 < max(shown) < top
 
 
+@pytest.mark.parametrize(
+    ("outcome", "marked"), [("cruise", []), ("landed", ["end (landed)"]), ("crashed", ["end (crashed)"])]
+)
+def test_where_a_flight_touched_the_ground_is_marked(flight: Flight, outcome: str, marked: list[str]) -> None:
+    figure = trajectory.draw(Record(dataclasses.replace(flight, score={**flight.score, "outcome": outcome})))
+    assert figure is not None
+    ends = [line for line in figure.axes[0].lines if str(line.get_label()).startswith("end (")]
+    assert [line.get_label() for line in ends] == marked
+    assert {line.get_color() for line in ends} <= {BLUE if outcome == "landed" else RED}
+
+
 def path(axes: Axes) -> tuple[list[float], list[float]]:
     """Return the points of the trajectory."""
     pairs = [line.get_data() for line in axes.lines if line.get_label() in ("rail", *PHASES)]
@@ -399,9 +410,9 @@ def test_processor_features_are_those_of_floating_point(tmp_path: Path) -> None:
 
 
 def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_path: Path) -> None:
-    """A mass that JSBSim cannot fly: two rows of truth, neither of them a number."""
-    heavy = "aircraft.properties.inertia/pointmass-weight-lbs=1e6"
-    flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", heavy])
+    """A wing that JSBSim cannot fly: two rows of truth, neither of them a number."""
+    vast = "aircraft.properties.metrics/Sw-sqft=1e6"
+    flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", vast])
     assert flight.score["outcome"] == "diverged"
     assert plots.save_plots(flight, tmp_path) == []
 

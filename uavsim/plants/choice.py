@@ -8,7 +8,7 @@ from typing import Any
 
 from uavsim.plants.in_jsbsim import NAME
 from uavsim.plants.kinds import KINDS, Kind
-from uavsim.plants.plant import Plant
+from uavsim.plants.plant import STEP_RATES, Plant
 from uavsim.plants.rigs.centrifuge import CentrifugeSettings
 from uavsim.plants.rigs.launch_curve import LaunchCurveSettings
 from uavsim.plants.rigs.wind_tunnel import WindTunnelSettings
@@ -27,11 +27,14 @@ class PlantSettings:
     kind
         "jsbsim" flies the aircraft off its catapult; the others are rigs that hold the sensors and the detector. Others
         come from packages, from `--plugin` or from Python.
+    step_rate
+        Steps a second, 1000, 2000, 4000 or 8000 Hz, and as many rows of truth.
     options
         Settings of a plant that is not one of ours, as that has them.
     """
 
     kind: str = NAME
+    step_rate: int = STEP_RATES[0]
     launch_curve: LaunchCurveSettings = field(default_factory=LaunchCurveSettings)
     centrifuge: CentrifugeSettings = field(default_factory=CentrifugeSettings)
     wind_tunnel: WindTunnelSettings = field(default_factory=WindTunnelSettings)

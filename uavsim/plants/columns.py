@@ -53,13 +53,14 @@ RAW = {
 """What is read each step: the column, its JSBSim property, and the factor to SI."""
 
 INDEX = {name: i for i, name in enumerate(RAW)}
-ALTITUDE, WING = INDEX["altitude"], INDEX["wing"]
-AIR, AIR_OFFSET = struct.Struct("3d"), 8 * INDEX["mach"]  # mach, p_static, temperature stand together in RAW
+ALTITUDE, WING, THROTTLE = INDEX["altitude"], INDEX["wing"], INDEX["throttle"]
 MOTION = itemgetter(*(INDEX[n] for n in ("north", "east", "altitude", "vn", "ve", "vd")))
 ATTITUDE = itemgetter(*(INDEX[n] for n in ("roll", "pitch", "heading")))
-RATES = itemgetter(*(INDEX[n] for n in ("p", "q", "r")))
 CENTRE = itemgetter(*(INDEX[n] for n in ("cg_x", "cg_y", "cg_z")))
-FLOW = itemgetter(*(INDEX[n] for n in ("p_static", "temperature", "mach", "alpha", "beta", "throttle")))
+AIR, AIR_OFFSET = struct.Struct("3d"), 8 * INDEX["mach"]  # mach, p_static, temperature stand together in RAW
+AT_HEAD = ("airspeed", "mach", "p_static", "temperature", "cg_x", "cg_y", "cg_z", "p", "q", "r", "alpha", "beta")
+OF_ROW = itemgetter(*(INDEX[n] for n in AT_HEAD))
+OF_RECORD = struct.Struct("".join("d" if n in AT_HEAD else "8x" for n in RAW))  # the same, in the order of RAW
 FELT = slice(INDEX["force_x"], INDEX["r_dot"] + 1)  # what the specific force is made of stands together in RAW
 OWN = ("catapult_force", "fx", "fy", "fz")  # N and m/s^2: what is recorded beside them, in SI already
 ROW = struct.Struct(f"{len(RAW) + len(OWN)}d")

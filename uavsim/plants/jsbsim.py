@@ -5,6 +5,9 @@ The only module that imports jsbsim. Facts it rests on:
 * In one `run()` JSBSim propagates the state first and evaluates forces with it last, so position, velocity, forces and
   angular acceleration read after a step all belong to its end. The non-gravitational force over mass is then the
   specific force at the centre of gravity without the one-step lag of JSBSim's own pilot accelerations.
+* For the same reason what is set before a `run()` acts in the step after the one that this makes. On the rail rates are
+  integrated rectangularly, an acceleration for one step, so the rail gives the mean force over that step (`rail`,
+  `held`); what is felt at a row's own time is then the mean of two rows. Off the rail both are of two steps again.
 * At the accelerometer, r from the centre of gravity, is felt besides  w' x r + w x (w x r) + 2 w x r' + r''. The last
   two act while the wing opens and the centre of gravity moves; they are backward differences of second order.
 * Nodes are looked up once. Each step's raw values are packed into one buffer; SI and derived columns are computed for
@@ -16,7 +19,7 @@ import ctypes
 import re
 from collections.abc import Callable, Iterator
 from difflib import get_close_matches
-from math import exp, inf, isfinite, pi
+from math import atan2, cos, exp, inf, isfinite, pi, sin, sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -27,6 +30,7 @@ from numpy.typing import NDArray
 
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
+from uavsim.plants import held
 from uavsim.plants.air.moving import MovingAir
 from uavsim.plants.air.moving import State as AirState
 from uavsim.plants.air.weather import at_ground, doubts
@@ -39,25 +43,26 @@ from uavsim.plants.columns import (
     ATTITUDE,
     CENTRE,
     FELT,
-    FLOW,
     FT,
     INCH,
     INDEX,
     LBF,
     MOTION,
+    OF_RECORD,
+    OF_ROW,
     OWN,
     PSF,
     RANKINE,
-    RATES,
     RAW,
     ROW,
     SLUG,
     SLUG_FT2,
+    THROTTLE,
     WING,
 )
 from uavsim.plants.hangar import find_airframe, is_packaged
 from uavsim.plants.plant import Commands, Run
-from uavsim.plants.rail import FREE, Motion, Rail, RailForces, Vector
+from uavsim.plants.rail import Motion, Rail, RailForces, Vector, body_axes, turned
 from uavsim.plants.settings import AircraftSettings
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -67,7 +72,17 @@ WING_OUT = 0.99
 
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
 _TURN = ("air/p-rad_sec", "air/q-rad_sec", "air/r-rad_sec")  # of the air, which an aircraft's damping may read
+INCHES = 12.0  # in a foot
+STILL = 1e-4  # in/s of airspeed, below which its quotient with the Mach number is not taken for the speed of sound
+BEYOND = 1e11  # (in/s)², 8 km/s beside the centre of gravity: nothing turns like that but what is about to diverge
+CONTACT = re.compile(r"(gear|contact)/unit(\[\d+\])?/WOW")  # whether a wheel or another point of it is on the ground
+
+RATES_BY = ("simulation/integrator/rate/rotational", "simulation/integrator/rate/translational")
+MEAN_OF_STEP = 1.0  # rectangular: an acceleration acts for the step after it, so the rail gives the mean over that
+TWO_STEPS = 3.0  # Adams-Bashforth of second order, in flight; the rectangular loses 2 % of a roll while the wings open
+
 _COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
+GET = FGPropertyNode.get_double_value
 Row = tuple[float, ...]
 Array = NDArray[np.float64]
 
@@ -96,7 +111,8 @@ class JsbsimPlant:
     on_rail
         Whether a shoe is still on the rail.
     aloft
-        Whether the altitude is a number and above the ground.
+        Whether the altitude of the centre of gravity is a number and above the ground, and off the rail none of the
+        points of contact that the aircraft has touches it.
     failure
         What JSBSim said when it could not go on; empty as long as it can.
 
@@ -108,6 +124,7 @@ class JsbsimPlant:
 
     def __init__(self, settings: Run) -> None:
         self.settings = settings
+        self._rate = settings.step_rate
         self.dt = 1.0 / settings.step_rate
         self.k = 0
         self.t = 0.0
@@ -117,7 +134,9 @@ class JsbsimPlant:
         self._run: Callable[[], bool] = self._fdm.run
         self._nodes = [self._node(name) for name, _ in RAW.values()]
         self._commands = [self._node(name) for name in _COMMANDS]
-        self._eye = self._accelerometer()
+        self._eye = self._place_of(settings.accelerometer_position)
+        self._head = self._place_of(settings.head_position)
+        self._contacts = [self._node(name) for name in self._catalogue if CONTACT.fullmatch(name)]
         self._forces = [
             (self._node(f"external_reactions/{name}"), unit)
             for name, unit in (
@@ -134,6 +153,7 @@ class JsbsimPlant:
             for end in ("front", "rear")
         )
         self.row: Row = self._read()
+        self._gravity = self._value("accelerations/gravity-ft_sec2") * FT
         self.rail = self._rail()
         self.on_rail = True
         self._settling = round(SETTLING_TIME * settings.step_rate)
@@ -150,8 +170,9 @@ class JsbsimPlant:
         self._wind_to = [self._node(name).set_double_value for name in _WIND]
         turns = all(name in self._catalogue for name in _TURN)
         self._turn_to = [self._node(name).set_double_value for name in _TURN] if turns else []
-        self._motion: Iterator[list[float]] | None = None
+        self._blown: Iterator[list[float]] | None = None
         self._attended = True
+        self._left: int | None = None  # step at which it has left the rail
         self._datum = self.row
         self.aloft = True
         self.failure = ""
@@ -161,6 +182,7 @@ class JsbsimPlant:
         self._size = 0
         self._offsets = (self._lever(self.row),) * 3  # of the sensor from the centre of gravity, newest first
         self._still = True
+        self._acted: Vector | None = self._felt(self.row)  # specific force that acts from the last row on; on the rail
         self._record(self.row)
 
     # -- setting up --------------------------------------------------------------------------------------------------
@@ -170,8 +192,9 @@ class JsbsimPlant:
         self._functions = airframe.checked.functions
         fdm = load_airframe(airframe)
         fdm.set_dt(self.dt)
-        for name in ("rate", "position"):  # Adams-Bashforth 2; Euler loses 2 % of a roll while the wings open
-            fdm.set_property_value(f"simulation/integrator/{name}/rotational", 3.0)
+        fdm.set_property_value("simulation/integrator/position/rotational", TWO_STEPS)
+        for name in RATES_BY:
+            fdm.set_property_value(name, MEAN_OF_STEP)
         return fdm
 
     def _node(self, name: str) -> FGPropertyNode:
@@ -231,9 +254,7 @@ class JsbsimPlant:
     def _check_body(self) -> None:
         """Refuse a body that cannot be, as JSBSim has it with all that was set: mass, inertia, size."""
         mass = self._value("inertia/mass-slugs") * SLUG
-        moments = [
-            self._value(f"inertia/i{axes}-slugs_ft2") * SLUG_FT2 for axes in ("xx", "yy", "zz", "xy", "xz", "yz")
-        ]
+        moments = self._inertia()
         sizes = [self._value(f"metrics/{name}") for name in ("bw-ft", "cbarw-ft", "Sw-sqft")]
         if not (0.0 < mass < inf and all(map(isfinite, moments)) and all(0.0 < size < inf for size in sizes)):
             raise ValueError("aircraft.model: its mass, span, chord and wing area must be above 0, its inertia finite")
@@ -252,23 +273,31 @@ class JsbsimPlant:
                 raise ValueError(f"{where} is read-only in JSBSim")
             self._set(name, value)
 
-    def _accelerometer(self) -> Vector:
-        """Place of the accelerometer in structural axes (x aft, y right, z up), inches."""
+    def _place_of(self, position: Vector) -> Vector:
+        """Place of a sensor in structural axes (x aft, y right, z up), inches."""
         x, y, z = (self._value(f"metrics/eyepoint-{axis}-in") for axis in "xyz")
-        forward, right, down = self.settings.accelerometer_position
+        forward, right, down = position
         return x - forward / INCH, y + right / INCH, z - down / INCH
+
+    def _inertia(self) -> list[float]:
+        """Return the tensor of inertia about the centre of gravity: xx, yy, zz, xy, xz, yz, kg m²."""
+        return [self._value(f"inertia/i{axes}-slugs_ft2") * SLUG_FT2 for axes in ("xx", "yy", "zz", "xy", "xz", "yz")]
 
     def _rail(self) -> Rail:
         s = self.settings
         front, rear = self._shoe_offsets(self.row)
+        mass, inertia = self.row[INDEX["mass"]] * SLUG, self._inertia()
+        if problem := held.problem(mass, inertia, front, rear, s.step_rate):
+            raise ValueError(problem)
         return Rail(
             s.launcher,
-            mass=self.row[INDEX["mass"]] * SLUG,
-            roll_inertia=self._value("inertia/ixx-slugs_ft2") * SLUG_FT2,
-            gravity=self._value("accelerations/gravity-ft_sec2") * FT,
+            mass=mass,
+            roll_inertia=inertia[0],
+            gravity=self._gravity,
             front=front,
             rear=rear,
             release_time=s.release_time,
+            step=self.dt,
             force_factor=s.force_factor,
         )
 
@@ -313,10 +342,12 @@ class JsbsimPlant:
             _leave_up(self._fdm)
             self.failure = _said(error, self.settings.aircraft.model)
         self.k += 1
-        self.t = self.k / self.settings.step_rate
-        self.row = row = self._read()
+        self.t = self.k / self._rate
+        self.row = row = tuple(map(GET, self._nodes))
         self._record(row)
         self.aloft = row[ALTITUDE] > self._ground and not self.failure  # false too for NaN
+        if self._contacts and not self.on_rail:
+            self.aloft = self.aloft and not any(map(GET, self._contacts))
 
     def step_unrecorded(self) -> None:
         """Advance by one step of bare JSBSim: the measure that recording is compared with."""
@@ -325,35 +356,43 @@ class JsbsimPlant:
             self._attend()
         self._run()
         self.k += 1
-        self.t = self.k / self.settings.step_rate
+        self.t = self.k / self._rate
 
     def _read(self) -> Row:
-        return tuple(map(FGPropertyNode.get_double_value, self._nodes))
+        return tuple(map(GET, self._nodes))
 
     def _record(self, row: Row) -> None:
         self.force = self._felt(row)
+        if self._acted is not None:
+            self._centre(self._acted)
         ROW.pack_into(self._buffer, self._size, *row, self.rail.push, *self.force)
         self._size += ROW.size
+
+    def _centre(self, acted: Vector) -> None:
+        """On the rail a row's forces are the mean of the step that follows it: at its own time is the mean of two."""
+        now = self.force
+        self.force = (0.5 * (acted[0] + now[0]), 0.5 * (acted[1] + now[1]), 0.5 * (acted[2] + now[2]))
+        self._acted = now
 
     def _attend(self) -> None:
         """Look after what is not always there: the rail, and air that moves."""
         moving = self._moving
         if self.on_rail:
             self._hold(self.t)
-            if not self.rail.active:
-                moving.tell("rail-exit", self.t)
+        elif self._left is not None:
+            self._fly_free(self._left)
         awaited = moving.gusts.awaited
         if awaited and self.row[WING] >= WING_OUT:
             moving.tell("wing-out", self.t)
         if moving.active:
             self._blow(self.t)
-        self._attended = self.on_rail or moving.active or bool(awaited)
+        self._attended = self.on_rail or self._left is not None or moving.active or bool(awaited)
 
     def _blow(self, time: float) -> None:
         """Let the air move through the step that begins at `time`."""
-        if self._motion is None:
-            self._motion = self._moving.motion(time, self._state)
-        north, east, down, p, q, r = next(self._motion)
+        if self._blown is None:
+            self._blown = self._moving.motion(time, self._state)
+        north, east, down, p, q, r = next(self._blown)
         to_north, to_east, to_down = self._wind_to
         to_north(north / FT)
         to_east(east / FT)
@@ -372,19 +411,42 @@ class JsbsimPlant:
         )
 
     def _hold(self, time: float) -> RailForces:
+        """Set the rail's forces: JSBSim takes them in at the end of the coming step, and they act in the one after."""
+        ahead = 1.5 * self.dt
+        forces = self.rail.forces(time + ahead, self._motion(ahead), self._shoe_offsets(self.row))
+        self._push(forces)
+        if not self.rail.active:
+            self.on_rail, self._left = False, self.k
+            self._moving.tell("rail-exit", self.t)
+        return forces
+
+    def _fly_free(self, left: int) -> None:
+        """Integrate in two steps again once neither of the two has a force of the rail in it."""
+        if self.k >= left + 2:
+            for name in RATES_BY:
+                self._set(name, TWO_STEPS)
+            self._left = self._acted = None
+
+    def _motion(self, ahead: float) -> Motion:
+        """Return the motion `ahead` of the present, s, from the present accelerations."""
         row = self.row
         north, east, altitude, vn, ve, vd = MOTION(row)
         north0, east0, altitude0, *_ = MOTION(self._datum)
-        motion = Motion(
-            ((north - north0) * FT, (east - east0) * FT, (altitude0 - altitude) * FT),
-            (vn * FT, ve * FT, vd * FT),
-            ATTITUDE(row),
-            RATES(row),
+        fx, fy, fz, mass, _, _, _, p, q, r, p_dot, q_dot, r_dot = row[FELT]
+        x, y, z = body_axes(ATTITUDE(row))
+        pull = self._gravity / FT
+        an, ae, ad = ((fx * x[i] + fy * y[i] + fz * z[i]) / mass + (pull if i == 2 else 0.0) for i in range(3))
+        half = 0.5 * ahead
+        return Motion(
+            (
+                (north - north0 + ahead * (vn + half * an)) * FT,
+                (east - east0 + ahead * (ve + half * ae)) * FT,
+                (altitude0 - altitude + ahead * (vd + half * ad)) * FT,
+            ),
+            ((vn + ahead * an) * FT, (ve + ahead * ae) * FT, (vd + ahead * ad) * FT),
+            turned(ATTITUDE(row), (p + half * p_dot, q + half * q_dot, r + half * r_dot), ahead),
+            (p + ahead * p_dot, q + ahead * q_dot, r + ahead * r_dot),
         )
-        forces = self.rail.forces(time, motion, self._shoe_offsets(row))
-        self.on_rail = self.rail.active
-        self._push(forces if self.on_rail else FREE)
-        return forces
 
     def _push(self, f: RailForces) -> None:
         values = (f.axial, f.front_normal, f.front_lateral, f.rear_normal, f.rear_lateral, f.roll_moment)
@@ -441,25 +503,63 @@ class JsbsimPlant:
         )
 
     def air(self, time: float) -> Vector:
-        """Total pressure, static pressure, Pa, and temperature, K, at any recorded `time`, linear within a step."""
-        steps = time * self.settings.step_rate
+        """Total, static pressure, Pa, and temperature, K, at the head at any recorded `time`, linear within a step.
+
+        How much faster the head is than the centre of gravity is taken from the nearest row.
+        """
+        steps = time * self._rate
         k = int(steps)
         if k >= self.k:
             k = self.k - 1
         share = steps - k
-        at = k * ROW.size + AIR_OFFSET
-        mach0, static0, temperature0 = AIR.unpack_from(self._buffer, at)
-        mach, static, temperature = AIR.unpack_from(self._buffer, at + ROW.size)
+        at = k * ROW.size
+        mach0, static0, temperature0 = AIR.unpack_from(self._buffer, at + AIR_OFFSET)
+        mach, static, temperature = AIR.unpack_from(self._buffer, at + ROW.size + AIR_OFFSET)
         static = (static0 + share * (static - static0)) * PSF
-        total = airdata.isentropic_total(static, mach0 + share * (mach - mach0))
+        mach = mach0 + share * (mach - mach0)
+        if moves := self._beside(OF_RECORD.unpack_from(self._buffer, at if share < 0.5 else at + ROW.size)):
+            mach += moves[0]
+        total = airdata.isentropic_total(static, mach)
         return total, static, (temperature0 + share * (temperature - temperature0)) * RANKINE
 
     def flow(self) -> tuple[float, float, float, float, float, float, float]:
         """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
-        static, temperature, mach, alpha, beta, throttle = FLOW(self.row)
+        here = OF_ROW(self.row)
+        _, mach, static, temperature, _, _, _, _, _, _, alpha, beta = here
         static *= PSF
+        if moves := self._beside(here):
+            faster, u, v, w = moves
+            mach, alpha, beta = mach + faster, atan2(w, u), atan2(v, sqrt(u * u + w * w))
         total = airdata.isentropic_total(static, mach)
-        return total, static, temperature * RANKINE, mach, alpha, beta, throttle
+        return total, static, temperature * RANKINE, mach, alpha, beta, self.row[THROTTLE]
+
+    def _beside(self, here: Row) -> tuple[float, float, float, float] | None:
+        """How the head moves, which has ω × r beside the centre of gravity, or nothing if it has none.
+
+        Returns
+        -------
+        tuple
+            Its Mach number less that of the centre of gravity, and its velocity in the air, body axes, in/s.
+        """
+        speed, mach, _, temperature, x, y, z, p, q, r, alpha, beta = here
+        a, b, c = self._head
+        x -= a  # ahead, to the right and down
+        y = b - y
+        z -= c
+        u = q * z - r * y
+        v = r * x - p * z
+        w = p * y - q * x
+        if not 0.0 < u * u + v * v + w * w < BEYOND:
+            return None
+        speed *= INCHES
+        ahead = speed * cos(beta)
+        u += ahead * cos(alpha)
+        v += speed * sin(beta)
+        w += ahead * sin(alpha)
+        there = sqrt(u * u + v * v + w * w)
+        if speed > STILL:
+            return mach * (there - speed) / speed, u, v, w
+        return there * INCH / airdata.speed_of_sound(temperature * RANKINE) - mach, u, v, w
 
     @property
     def finite(self) -> bool:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 
 Vector = tuple[float, float, float]
+STEP_RATES = (1000, 2000, 4000, 8000)  # Hz, steps a second that a plant may take: whoever flies at one can halve it
 Commands = tuple[float, float, float, float, float]
 """Wing (0 folded, 1 out), throttle (0 … 1), pitch and roll, rad, stabiliser engaged (0, 1)."""
 
@@ -30,7 +31,7 @@ class Plant(Protocol):
     on_rail
         Whether it is held by a launcher or a rig.
     aloft
-        Whether it can go on: the altitude is a number and above the ground.
+        Whether it can go on: the altitude is a number and above the ground, and nothing of it touches that.
     failure
         What ended it from inside, one line; empty as long as it goes on.
     """
@@ -53,10 +54,16 @@ class Plant(Protocol):
         """Take the onboard computer's commands; they act from the next step on."""
 
     def air(self, time: float, /) -> Vector:
-        """Total, static pressure, Pa, and temperature, K, at any recorded `time`, s, linear within a step."""
+        """Total, static pressure, Pa, and temperature, K, at any recorded `time`, s, linear within a step.
+
+        Of the flow at the head (`Run.head_position`).
+        """
 
     def flow(self) -> tuple[float, float, float, float, float, float, float]:
-        """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step."""
+        """Total, static pressure, Pa, temperature, K, Mach number, alpha, beta, rad, and throttle after this step.
+
+        Of the flow at the head, too.
+        """
 
     def truth(self) -> dict[str, NDArray[np.float64]]:
         """Columns of the truth, SI, one value a step, the first at time 0."""
@@ -82,8 +89,8 @@ class Run:
         Hz.
     aircraft
         Of the scenario; a rig flies none.
-    accelerometer_position
-        From the aircraft's EYEPOINT, body axes forward-right-down, m.
+    accelerometer_position, head_position
+        Of accelerometer and air-data head from the aircraft's EYEPOINT, body axes forward-right-down, m.
     """
 
     environment: EnvironmentSettings
@@ -92,9 +99,10 @@ class Run:
     release_time: float
     force_factor: float = 1.0
     random_seed: int = 1
-    step_rate: float = 1000.0
+    step_rate: float = STEP_RATES[0]
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)
     accelerometer_position: Vector = (0.0, 0.0, 0.0)
+    head_position: Vector = (0.0, 0.0, 0.0)
 
     @property
     def time(self) -> NDArray[np.float64]:

@@ -10,18 +10,23 @@ where the fall begins at the first moment at which the remaining way is no longe
 while the push dies away: v t_fall + (n g0 / 3 - g sin(theta) / 2) t_fall^2. The front shoe leaves first; for the time
 that the rear one still holds, gravity turns the nose down (tip-off).
 
+What is given is the mean over a step, so that its impulse is right whatever the step: the push is integrated in closed
+form with its fall beginning where it does, within a step; a shoe that leaves within one counts for the share of it
+during which it holds; springs are taken with the motion of the step's middle. At 26 m/s a step of 1 ms is 26 mm of way.
+
 Everything is SI; the rail's frame is (along, right, down), the body's (forward, right, down).
 """
 
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import cos, pi, sin, tan
 
 from uavsim.plants.settings import LauncherSettings
 from uavsim.truth import STANDARD_GRAVITY
 
-CONTACT_FREQUENCY = 40.0  # Hz, of the aircraft on its shoes: stiff, and stable at a step of 1 ms
+CONTACT_FREQUENCY = 40.0  # Hz, of the aircraft's mass on both shoes: stiff, and stable at a step of 1 ms
 ROLL_FREQUENCY = 15.0  # Hz, of the aircraft held in roll by the shoes' width; its small inertia allows no more at 1 ms
 DAMPING_RATIO = 0.7
+ROUNDING = 1e-9  # s, within which a step ends at the release
 CREEP_SPEED = 0.01  # m/s, below which friction fades to 0, so that a resting aircraft is not shaken
 
 Vector = tuple[float, float, float]
@@ -63,8 +68,32 @@ def body_axes(attitude: Vector) -> tuple[Vector, Vector, Vector]:
     )
 
 
+def turned(attitude: Vector, rates: Vector, time: float) -> Vector:
+    """Euler angles a short `time` later at constant body rates, to first order, rad."""
+    roll, pitch, heading = attitude
+    p, q, r = rates
+    sideways = q * sin(roll) + r * cos(roll)
+    return (
+        roll + time * (p + sideways * tan(pitch)),
+        pitch + time * (q * cos(roll) - r * sin(roll)),
+        heading + time * sideways / cos(pitch),
+    )
+
+
 def _dot(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _ramp(since: float, length: float) -> float:
+    """Integral of what rises evenly from 0 to 1 in `length` and then stays, s."""
+    if since <= 0.0:
+        return 0.0
+    return 0.5 * since * since / length if since < length else since - 0.5 * length
+
+
+def _share(left: float, way: float) -> float:
+    """Share of a step on `way` for which a shoe holds that leaves after `left`."""
+    return 0.0 if left <= 0.0 else 1.0 if left >= way else left / way
 
 
 class Rail:
@@ -82,8 +111,19 @@ class Rail:
         The shoes relative to the centre of gravity at rest, body axes, m.
     release_time
         When the latch lets go, s.
+    step
+        Over which forces are averaged, s.
     force_factor
         This launch's push over the nominal one.
+
+    Attributes
+    ----------
+    travel
+        Way along the rail at the beginning of the step that was asked for last, m.
+    push
+        Mean force of the catapult over that step, N.
+    active
+        Whether a shoe was on the rail at its beginning.
     """
 
     def __init__(
@@ -96,17 +136,20 @@ class Rail:
         front: Vector,
         rear: Vector,
         release_time: float,
+        step: float,
         force_factor: float = 1.0,
     ) -> None:
         if front[0] <= rear[0]:
             raise ValueError("the front launch shoe must lie ahead of the rear one")
         self.settings = settings
         self.release_time = release_time
+        self._step = step
         self.along, self.right, self.down = body_axes(
             (0.0, settings.elevation_deg * pi / 180.0, settings.heading_deg * pi / 180.0)
         )
         self.plateau = mass * STANDARD_GRAVITY * settings.peak_specific_force_g * force_factor  # N
         backward = -gravity * self.along[2]  # m/s^2, g sin(theta)
+        self._pushed = self.plateau / mass - backward  # m/s^2 along the rail on the plateau
         self._run_out = (self.plateau / mass / 3.0 - backward / 2.0) * settings.fall**2  # m, at no speed
         self._rest = (front, rear)
         angular = 2.0 * pi * CONTACT_FREQUENCY
@@ -126,59 +169,80 @@ class Rail:
         self.push = 0.0
         self.active = True
 
-    def _push_at(self, time: float, speed: float) -> float:
-        """Force of the catapult at `time`, N."""
-        s = self.settings
-        since = time - self.release_time
-        if since <= 0.0:
+    def _mean_push(self, start: float, speed: float, held: float) -> float:
+        """Mean force of the catapult over the step from `start`, s, of which it acts for the share `held`, N."""
+        s, step = self.settings, self._step
+        since = start - self.release_time
+        if since + step < ROUNDING:
             return 0.0
         if self._fall_start is None:
-            if since > s.rise and self.travel + speed * s.fall + self._run_out >= s.stroke:
-                self._fall_start = time
-            return self.plateau * min(since / s.rise, 1.0)
-        return self.plateau * max(1.0 - (time - self._fall_start) / s.fall, 0.0)
+            left = s.stroke - self.travel - self._run_out - (speed - 0.5 * step * self._pushed) * s.fall
+            gained = step * (speed + self._pushed * s.fall)  # what of it is used up in this step
+            begins = max(since + step * left / gained if 0.0 < left < gained else since, s.rise)
+            if left < gained and begins < since + step:
+                self._fall_start = begins
+        return (self._impulse(since + held * step) - self._impulse(since)) / step
+
+    def _impulse(self, since: float) -> float:
+        """Integral of the push from release until `since` later, N s."""
+        s, fall = self.settings, self._fall_start
+        lost = 0.0 if fall is None else _ramp(since - fall, s.fall)
+        return self.plateau * (_ramp(since, s.rise) - lost)
 
     def forces(self, time: float, motion: Motion, shoes: tuple[Vector, Vector]) -> RailForces:
-        """Forces on the aircraft at `time`; `shoes` relative to the present centre of gravity, body axes, m."""
+        """Mean forces on the aircraft over the step whose middle is `time`, s.
+
+        Parameters
+        ----------
+        time
+            Middle of the step, s.
+        motion
+            At that time.
+        shoes
+            Front and rear, from the centre of gravity, body axes, m.
+        """
         along, right, down = self.along, self.right, self.down
         axes = body_axes(motion.attitude)
-        self.travel = _dot(motion.displacement, along)
+        middle = _dot(motion.displacement, along)
         speed = _dot(motion.velocity, along)
+        way = speed * self._step
+        self.travel = middle - 0.5 * way
         if self.travel >= self.settings.stroke:
             self.active, self.push = False, 0.0
             return FREE
 
+        held = [_share(leaves - self.travel, way) for leaves in (self._front_leaves, self.settings.stroke)]
         normal_loads, lateral_loads, couple = [], [], 0.0
-        for shoe, rest, load, leaves in (
-            (shoes[0], self._rest[0], self._front_rest, self._front_leaves),
-            (shoes[1], self._rest[1], self._rear_rest, self.settings.stroke),
+        for shoe, rest, load, share in (
+            (shoes[0], self._rest[0], self._front_rest, held[0]),
+            (shoes[1], self._rest[1], self._rear_rest, held[1]),
         ):
-            if self.travel >= leaves:
+            if share == 0.0:
                 normal_loads.append(0.0)
                 lateral_loads.append(0.0)
                 continue
             x, y, z = shoe
-            normal_loads.append(load + self._spring(down, axes, motion, (x, y, z), rest[2]))
+            normal_loads.append(share * (load + self._spring(down, axes, motion, (x, y, z), rest[2])))
             # The slot's width takes the couple that a lateral force at the shoe would roll the aircraft with, so the
             # lateral guidance acts at the height of the centre of gravity and roll is held on its own.
-            lateral = self._spring(right, axes, motion, (x, y, 0.0), rest[1])
+            lateral = share * self._spring(right, axes, motion, (x, y, 0.0), rest[1])
             lateral_loads.append(lateral)
             couple += z * lateral
 
-        support = self._axial_rest - self._stiffness * self.travel - self._damping * speed
+        support = self._axial_rest - self._stiffness * middle - self._damping * speed
         if time > self.release_time:
             support = max(support, 0.0)
-        self.push = self._push_at(time, speed)
+        self.push = self._mean_push(time - 0.5 * self._step, speed, held[1])
         rubbing = self.settings.friction * (abs(normal_loads[0]) + abs(normal_loads[1]))
         friction = -rubbing * max(-1.0, min(1.0, speed / CREEP_SPEED)) if time > self.release_time else 0.0
-        roll = _dot(axes[1], down)
+        rolling = self._roll_stiffness * _dot(axes[1], down) + self._roll_damping * motion.rates[0]
         return RailForces(
             axial=self.push + support + friction,
             front_normal=normal_loads[0],
             front_lateral=lateral_loads[0],
             rear_normal=normal_loads[1],
             rear_lateral=lateral_loads[1],
-            roll_moment=couple - self._roll_stiffness * roll - self._roll_damping * motion.rates[0],
+            roll_moment=couple - held[1] * rolling,
         )
 
     def _spring(

@@ -142,7 +142,7 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
         loop.advance(CHUNK)
         middle = perf_counter()
         if loop.ended not in ("", "completed"):
-            raise ValueError(f"{scenario.name}: the flight {loop.ended} at {leader.t:g} s; nothing to compare")
+            raise ValueError(f"{scenario.name}: the flight ends at {leader.t:g} s ({loop.ended}); nothing to compare")
         tape = leader.tape[first:]
         begun = perf_counter()
         _follow(reference, leader.k, tape, reference.step)

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from sensors import Streams
-from uavsim.cosim import STEP_RATE, Cosimulation
+from uavsim.cosim import Cosimulation
 from uavsim.scenario import load_scenario
 from uavsim.studies.intervals import share_interval
 from uavsim.studies.processes import each
@@ -162,7 +162,7 @@ def fly_case(case: Case, seed: int, extra: tuple[str, ...] = ()) -> FaultFlight:
     flight = Cosimulation(load_scenario(case.scenario, overrides=overrides).with_seed(seed))
     computer = flight.onboard.computer
     for when, setting, value in case.orders:
-        flight.advance(round(when * STEP_RATE) - flight.plant.k)
+        flight.advance(round(when * flight.scenario.plant.step_rate) - flight.plant.k)
         computer.settings = replace(computer.settings, **{setting: value})
     flight.advance(flight.steps)
     return _judge(case, seed, begins + case.late, flight)

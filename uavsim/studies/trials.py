@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sensors import Accelerometer, Streams, Vibration
-from uavsim.cosim import STEP_RATE, draw, make_plant
+from uavsim.cosim import draw, make_plant
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.scenario import Scenario
 from uavsim.score import Judged
@@ -177,7 +177,7 @@ def _fly(scenario: Scenario, index: int) -> _Flight:
     force = np.column_stack([table[name] for name in ("fx", "fy", "fz")])
     axial = force[:, "xyz".index(axis[1])] * (-1.0 if axis[0] == "-" else 1.0)
     end = min(exit_time, float(judged.time[-1]))
-    first = max(0, round((drawn.release_time - WAIT[0]) * STEP_RATE))
+    first = max(0, round((drawn.release_time - WAIT[0]) * scenario.plant.step_rate))
     nominal = scenario.launcher.peak_specific_force_g * G0 * drawn.force_factor
     push = nominal if scenario.plant.chosen.rings else 0.0
     truth = LaunchTruth(onset, judged.crossing_time, float(axial.max()), end)
@@ -187,26 +187,27 @@ def _fly(scenario: Scenario, index: int) -> _Flight:
 
 def _feel(scenario: Scenario, flight: _Flight, streams: Streams) -> tuple[Array, float, float, LaunchTruth]:
     """Let one unit feel a flight; return its readings, the time of the first, its rate, and the truth, s."""
-    settings, begin = scenario.accelerometer, flight.first / STEP_RATE
+    settings, rate = scenario.accelerometer, scenario.plant.step_rate
+    dt, begin = 1.0 / rate, flight.first / rate
     vibration = Vibration(
         scenario.vibration,
         streams,
-        dt=1.0 / STEP_RATE,
+        dt=dt,
         release_time=flight.release - begin,
         plateau=flight.push,
         rise=scenario.launcher.rise,
         scale=settings.vibration_scale,
     )
-    part = Accelerometer.from_settings(settings, streams, dt=1.0 / STEP_RATE)
+    part = Accelerometer.from_settings(settings, streams, dt=dt)
     readings: list[float] = []
     exited, step, left = flight.exit - begin, part.step, False
     for k, force in enumerate(flight.force):
-        t = k / STEP_RATE
+        t = k / rate
         for reading in step((t, vibration.on(force))):
             readings.extend(reading)
         if not left and t >= exited:
             left = True
-            vibration.leave_rail(t + 1.0 / STEP_RATE)
+            vibration.leave_rail(t + dt)
     table = np.array(readings).reshape(-1, 4)
     actual = part.description.rate * (1.0 + part.rate_error)
     return table[:, 1:], begin + float(table[0, 0]), actual, flight.truth

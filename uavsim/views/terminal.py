@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from uavsim.studies.bench import Cost, OnboardCost
 
 NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
-MOST_REASONS = 3  # of flights that ended from inside, that are told
+MOST_REASONS = 3  # why flights ended otherwise than expected, that are told
 QUANTILES = {"5 %": "p05", "median": "median", "95 %": "p95"}  # of `batch_summary`
 
 
@@ -229,10 +229,11 @@ def print_batch(flown: "Batch") -> None:
 
 
 def _reasons(flown: "Batch") -> list[str]:
-    """Why flights ended from inside, the most frequent first."""
+    """Why flights ended that did not end as expected, the most frequent first."""
     if "reason" not in flown.runs:
         return []
-    counted = flown.runs["reason"].dropna().value_counts().head(MOST_REASONS)
+    unexpected = flown.runs["outcome"] != flown.runs["expected"]
+    counted = flown.runs["reason"][unexpected].dropna().value_counts().head(MOST_REASONS)
     return [f"{_flights(int(count))}: {reason}" for reason, count in counted.items()]
 
 

@@ -115,8 +115,10 @@ def _path(axes: "Axes", record: Record, stretch: Stretch) -> None:
 
 def _shapes(record: Record) -> Iterator[tuple[Mark, str]]:
     yield from ((mark, SHAPES[mark.label]) for mark in record.marks if mark.label in SHAPES)
-    if record.scored("outcome") in {"crashed", "missed_launch", "diverged"}:
-        yield Mark(record.span[1], f"end ({record.scored('outcome')})", RED), "X"
+    outcome = record.scored("outcome")
+    if outcome in {"crashed", "landed", "missed_launch", "diverged"}:
+        colour, shape = (BLUE, "v") if outcome == "landed" else (RED, "X")
+        yield Mark(record.span[1], f"end ({outcome})", colour), shape
 
 
 def _scale(axes: "Axes", distance: Array, height: Array) -> None:
