@@ -7,6 +7,7 @@ integral from 0. A record's samples hold the folded spectrum, so that is what a 
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -155,7 +156,7 @@ def bins(count: int, least: int, number: int) -> list[slice]:
     """Return runs of frequencies, evenly wide on a logarithmic scale, of at least so many each."""
     edges = np.unique(np.geomspace(least, count, number + 1).astype(int))
     edges[0] = 0
-    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b - a >= least // 2]
+    return [slice(a, b) for a, b in pairwise(edges) if b - a >= least // 2]
 
 
 def holm(findings: Iterable[Finding], level: float = 0.01) -> list[Finding]:

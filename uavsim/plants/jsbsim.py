@@ -354,6 +354,8 @@ class JsbsimPlant:
         if self._motion is None:
             self._motion = self._moving.motion(time, self._state)
         north, east, down, p, q, r = next(self._motion)
+        if not self._moving.active:
+            self._motion = None  # until another gust comes; then it begins there
         to_north, to_east, to_down = self._wind_to
         to_north(north / FT)
         to_east(east / FT)

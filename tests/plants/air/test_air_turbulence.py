@@ -94,7 +94,7 @@ def test_so_has_one_aloft(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_across_the_wind_the_air_turns_by_u(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An aircraft that heads east in air whose axis is north sees u from its left: r = −∂u/∂x with the spectrum of u."""
+    """East, in air whose axis is north, u blows from the right to the left: r = −∂u/∂x, with the spectrum of u."""
     state = LEVEL._replace(heading=pi / 2.0)
     values = recorded(monkeypatch, state, RATE, LENGTH, seed=9)
     law = laws(specification.low(60.0, W20), 32.0)
@@ -174,7 +174,7 @@ def test_between_1000_and_2000_ft_the_variances_blend(height: float) -> None:
 
 
 def test_the_two_altitudes_are_independent() -> None:
-    """First values of 400 seeds; six correlations within 3.1/√400, 1 % over all: one of 0.22 is seen nine times in ten."""
+    """First values of 400 seeds; six correlations within 3.1/√400, 1 % over all: 0.22 is seen nine times in ten."""
     low, high = (
         np.array([flown(LEVEL._replace(height=h), steps=1, seed=s)[0, :6] for s in range(400)]) for h in (304.8, 609.7)
     )
@@ -228,7 +228,7 @@ def test_against_the_wind_r_changes_its_sign() -> None:
     "attitude", [(0.0, 0.0, 1.1), (0.0, 0.6, 0.0), (0.8, 0.0, 0.0), (0.4, -0.7, 2.5), (3.0, 1.2, -2.0)]
 )
 def test_aloft_it_turns_with_the_body(attitude: tuple[float, float, float]) -> None:
-    """u forward, v right, w down of the body: by the rotations about z, y, x, one after another; p, q, r as they are."""
+    """u forward, v right, w down of the body, turned about z, y, x one after another; p, q, r as they are."""
     roll, pitch, heading = attitude
     state = LEVEL._replace(height=800.0)
     level = flown(state)
