@@ -211,7 +211,7 @@ def test_events_of_the_commands() -> None:
 
 
 def test_one_comes_after_another_has_gone() -> None:
-    """In still air between them, each by its own event: the second begins at the very step, and blows its own length."""
+    """Still air between them, each by its own event: the second begins at the very step, and lasts its own length."""
     gusts = (
         GustSettings(2.0, "tail", "step", "time", 0.05, 0.05),
         GustSettings(3.0, "right", "one-minus-cosine", "wings-commanded", 0.1, 0.3),
