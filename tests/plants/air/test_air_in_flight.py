@@ -121,6 +121,20 @@ def test_the_truth_is_what_was_told_to_jsbsim_and_acts_in_the_same_step(monkeypa
     assert truth["airspeed"] == pytest.approx(np.linalg.norm(velocity - wind(truth), axis=1), abs=1e-6)
 
 
+def test_the_rotation_is_told_in_its_order() -> None:
+    """What goes to the aircraft's three properties of the air's rotation is the truth of the row that follows."""
+    environment = EnvironmentSettings(wind_speed=6.0, turbulence_wind_20ft=6.0)
+    plant = JsbsimPlant(Run(environment, LauncherSettings(), 0.3, RELEASE))
+    told: tuple[list[float], ...] = ([], [], [])
+    plant._turn_to = [each.append for each in told]  # type: ignore[misc]  # whether the aircraft has them or not
+    for _ in range(300):
+        plant.step()
+    truth = plant.truth()
+    for axis, each in zip("pqr", told, strict=True):
+        assert np.array_equal(truth[f"air_{axis}"][1:], each)
+        assert np.ptp(each) > 0.0
+
+
 def test_what_it_turns_by_and_what_it_blows_come_from_one_place() -> None:
     """Truth less mean wind and gusts is the generator's turbulence: its own columns of p, q, r go with w and v.
 

@@ -182,6 +182,17 @@ def test_the_two_altitudes_are_independent() -> None:
         assert abs(np.corrcoef(low[:, i], high[:, i])[0, 1]) < 0.16
 
 
+def test_its_first_row_is_that_of_air_that_has_always_blown() -> None:
+    """Of 200 seeds at 5 m, where L_u is seven times L_w: variances of all six, χ² with Holm at 1 %; 1.5 is seen."""
+    state = LEVEL._replace(height=5.0)
+    first = np.array([flown(state, steps=1, seed=s)[0, :6] for s in range(200)])
+    findings = []
+    for i, (name, law) in enumerate(laws(specification.low(5.0, W20), 32.0).items()):
+        variance, _ = specification.of_record(law, 4000, 1e-3)
+        findings.append(specification.of_power(name, float(np.mean(first[:, i] ** 2)) / variance, 200.0))
+    assert specification.holm(findings) == []
+
+
 def test_seeds_differ_and_repeat() -> None:
     assert np.array_equal(flown(seed=3), flown(seed=3))
     assert not np.isclose(flown(seed=3)[:, :6], flown(seed=4)[:, :6]).any()
