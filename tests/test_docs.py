@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from uavsim.plants.air.weather import PRESETS
 from uavsim.scenario import keys
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -29,6 +30,17 @@ def test_scenario_page_is_what_the_settings_declare(monkeypatch: pytest.MonkeyPa
 def test_links_lead_somewhere(page: Path) -> None:
     targets = re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8"))
     assert [t for t in targets if "://" not in t and not (page.parent / t).exists()] == []
+
+
+def test_the_page_on_the_air_has_every_key_and_every_weather() -> None:
+    """Its table of presets is row for row what `PRESETS` says."""
+    page = (ROOT / "docs" / "air.md").read_text(encoding="utf-8")
+    assert "`gust_speed` … `gust_length_s`" in page  # the keys of one gust, in short
+    own = [key.removeprefix("environment.") for key in keys() if key.startswith("environment.")]
+    assert [key for key in own if f"`{key}`" not in page and not key.startswith("gust_")] == []
+    rows = re.search(r"\| preset \|.*\n\|[-|]+\n((?:\|.*\n)+)", page)
+    assert rows
+    assert rows[1].splitlines() == [f"| `{name}` | {p.what} | {p.source} |" for name, p in PRESETS.items()]
 
 
 def test_readme_names_only_commands_that_exist() -> None:

@@ -8,6 +8,9 @@ that everybody may write is never used. The first that serves is taken:
     __pycache__                                beside the module
     uavsim/compiled/FOLDER_…                   in the user's cache, made for the user alone
 
+What is kept counts as long as the module, and all that the loop takes from elsewhere (`uavsim.compiled`), are as they
+were: machine code holds within it that of the functions that it calls, and the numbers of their modules.
+
 Every file begins with the SHA-256 of what follows, an index with numba's version before it. A file that is cut,
 damaged, unreadable or of another version counts as none: the loop is compiled anew. That a file cannot be written is no
 error either.
@@ -156,10 +159,11 @@ class Kept(caching.FunctionCache):
 
     _impl_class = _Places
 
-    def __init__(self, function: Any) -> None:
+    def __init__(self, function: Any, digest: str) -> None:
         super().__init__(function)
         place = self._impl.locator
-        self._cache_file = _Files(self._cache_path, self._impl.filename_base, place.get_source_stamp(), place._py_file)
+        stamp = (place.get_source_stamp(), digest)
+        self._cache_file = _Files(self._cache_path, self._impl.filename_base, stamp, place._py_file)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return what is kept for a signature, or None."""
@@ -174,9 +178,12 @@ class Kept(caching.FunctionCache):
             super().save_overload(sig, data)
 
 
-def compile_function(function: Any) -> Any:
-    """Return what compiles a function at its first call, without the interpreter's lock, and keeps the machine code."""
+def compile_function(function: Any, digest: str) -> Any:
+    """Return what compiles a function at its first call, without the interpreter's lock, and keeps the machine code.
+
+    `digest` is that of all that the function is made of.
+    """
     made: Any = njit(nogil=True, error_model="numpy")(function)
     with suppress(RuntimeError, OSError, AttributeError, TypeError):  # nowhere to keep it, or another numba's insides
-        made._cache = Kept(function)
+        made._cache = Kept(function, digest)
     return made

@@ -64,6 +64,60 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kept]:
     del sys.modules[made.name]
 
 
+class Calling(Kept):
+    """The same, whose function calls one of another module, with a number and an array of that."""
+
+    OTHER = """
+import numpy as np
+from uavsim.compiled import compiled
+FACTOR = 2
+ROW = np.array([1.0, 0.0])
+@compiled
+def times(x):
+    return FACTOR * x + ROW[1]
+"""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
+        self.other = folder / f"other_{folder.name}.py"
+        self.other.write_text(self.OTHER, encoding="utf-8")
+        source = f"from {self.other.stem} import times\ndef double(x):\n    return times(x)\n"
+        self.module.write_text(source, encoding="utf-8")
+
+    def load(self) -> tuple[float, int]:
+        """What a new process finds for 21, and how often that was loaded."""
+        sys.modules.pop(self.other.stem, None)
+        for path in (self.other, self.module):
+            spec = importlib.util.spec_from_file_location(path.stem, path)
+            assert spec is not None
+            assert spec.loader is not None
+            module = importlib.util.module_from_spec(spec)
+            sys.modules[path.stem] = module
+            exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), module.__dict__)
+        made: Any = compiled(module.double)
+        return made(21), sum(made.code.stats.cache_hits.values())
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "asked"),
+    [("FACTOR * x", "x * x", 441), ("FACTOR = 2", "FACTOR = 3", 63), ("[1.0, 0.0]", "[1.0, 4.0]", 46)],
+)
+def test_what_a_loop_takes_from_another_module_is_compiled_into_it(
+    old: str, new: str, asked: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So a change there compiles it anew, though its own module has not changed."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.setattr(machine_code._Private, "from_function", classmethod(lambda *_: None))
+    made = Calling(tmp_path)
+    assert made.load() == (42, 0)
+    assert made.load() == (42, 1)
+    made.other.write_text(Calling.OTHER.replace(old, new), encoding="utf-8")
+    assert made.load() == (asked, 0)
+    assert made.load() == (asked, 1)
+    for path in (made.other, made.module):
+        del sys.modules[path.stem]
+
+
 def emptied(path: Path) -> None:
     path.write_bytes(b"")
 

@@ -30,6 +30,12 @@ def figure(request: pytest.FixtureRequest) -> Figure:
     return check
 
 
+@pytest.fixture
+def table() -> Callable[[str], None]:
+    """Put a line of a table into the summary."""
+    return _measured.append
+
+
 def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Print what was measured: least … median … greatest."""
     if _measured:

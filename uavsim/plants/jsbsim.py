@@ -29,7 +29,7 @@ from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
 from numpy.typing import NDArray
 
 from uavsim import airdata
-from uavsim.airdata import GAS_CONSTANT_DRY_AIR
+from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MOLAR_MASS_DRY_AIR, MOLAR_MASS_WATER
 from uavsim.plants import held
 from uavsim.plants.air.moving import MovingAir
 from uavsim.plants.air.moving import State as AirState
@@ -69,6 +69,7 @@ from uavsim.truth import STANDARD_GRAVITY
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
 SETTLED = 0.5  # s of it, at whose end the shoes are at rest
 WING_OUT = 0.99
+DRIED = 0.02  # share of the vapour that may be lost before it is remarked on: two laws of saturation differ by 0.6 %
 
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
 _TURN = ("air/p-rad_sec", "air/q-rad_sec", "air/r-rad_sec")  # of the air, which an aircraft's damping may read
@@ -244,12 +245,21 @@ class JsbsimPlant:
     def _weather(self) -> None:
         """Give the air the pressure of the day, and its vapour; JSBSim's own standard is 0.5 Pa above ISO 2533."""
         environment = self.settings.environment
+        self._doubts = doubts(environment)
         ground = at_ground(environment)
         fall = exp(-STANDARD_GRAVITY * self.settings.launcher.height / (GAS_CONSTANT_DRY_AIR * ground.temperature))
         share = ground.pressure * fall / (self._value("atmosphere/P-psf") * PSF)
         self._set("atmosphere/P-sl-psf", share * self._value("atmosphere/P-sl-psf"))
-        if environment.humidity > 0.0:
-            self._set("atmosphere/RH", 100.0 * environment.humidity)
+        if ground.vapour_fraction > 0.0:  # not by "atmosphere/RH", which goes by the pressure before the day's
+            moles = ground.vapour_fraction / (1.0 - ground.vapour_fraction)
+            grams = 1000.0 * moles * MOLAR_MASS_WATER / MOLAR_MASS_DRY_AIR
+            self._set("atmosphere/vapor-fraction-ppm", 1000.0 * grams)
+            kept = self._value("atmosphere/vapor-fraction-ppm") / 1000.0
+            if kept < (1.0 - DRIED) * grams:
+                self._doubts.append(
+                    f"environment.humidity = {environment.humidity:g} is {grams:.0f} g of vapour per kg of dry air, "
+                    f"and JSBSim's air holds no more than {kept:.0f}"
+                )
 
     def _check_body(self) -> None:
         """Refuse a body that cannot be, as JSBSim has it with all that was set: mass, inertia, size."""
@@ -393,6 +403,8 @@ class JsbsimPlant:
         if self._blown is None:
             self._blown = self._moving.motion(time, self._state)
         north, east, down, p, q, r = next(self._blown)
+        if not self._moving.active:
+            self._blown = None  # until another gust comes; then it begins there
         to_north, to_east, to_down = self._wind_to
         to_north(north / FT)
         to_east(east / FT)
@@ -586,7 +598,7 @@ class JsbsimPlant:
     @property
     def remarks(self) -> list[str]:
         """What deserves a word: a line each, more of them at the end than at the start."""
-        said = doubts(self.settings.environment)
+        said = list(self._doubts)
         if self.settings.environment.turbulence_wind_20ft > 0.0 and not self._turn_to:
             said.append(
                 f"{self.settings.aircraft.model} flies without the turbulence's rotation (p, q, r): it has no "

@@ -207,7 +207,7 @@ class MovingAir:
         self.blows = self._rough or environment.wind_speed > 0.0
         self.gusts = Gusts(environment, heading_deg)
         self.active, self._told = self.blows, False
-        self._ahead = max(1, round(AHEAD * step_rate))
+        self._rate, self._ahead = step_rate, max(1, round(AHEAD * step_rate))
         self._random = [np.random.Generator(np.random.PCG64(s)) for s in np.random.SeedSequence(seed).spawn(2)]
         self._noise = [np.zeros((0, STATES))] * 2
         self._used = [0, 0]
@@ -226,11 +226,10 @@ class MovingAir:
         state : callable
             Tells of the aircraft; asked every 10 ms.
         """
-        since = np.arange(self._ahead) * self._box[7]
-        first = round(time / self._box[7])
+        first = round(time * self._rate)
         while True:
             block = self.ahead(state())[:, :6] if self.blows else np.zeros((self._ahead, 6))
-            times, done = first * self._box[7] + since, 0
+            times, done = np.arange(first, first + self._ahead) / self._rate, 0  # the plant's own, to the last digit
             first += self._ahead
             self.active = self.blows or self.gusts.following(float(times[0])) < inf
             while done < len(block):
@@ -281,7 +280,7 @@ class MovingAir:
         rows = np.zeros((len(times), COLUMNS))
         if self.blows:  # what is felt in a row was set at the beginning of the step that led to it
             rows[:] = self._record[first - 1 : first - 1 + len(times)]
-        begun = times - self._box[7]
+        begun = np.append(times[:1] - self._box[7], times[:-1])  # the very numbers of `motion`
         gust = self.gusts.over(begun)
         named = {"mean_wind_n": rows[:, 6], "mean_wind_e": rows[:, 7]}
         named |= {f"gust_{axis}": gust[:, i] for i, axis in enumerate("ned")}
