@@ -18,6 +18,7 @@ import numpy as np
 FOOT, POUND = 0.3048, 4.4482216  # m, N
 DT, SPAN = 0.001, 0.05  # s
 HEIGHT = 1000.0  # ft: far from the ground
+SPEED = 32.0  # m/s
 ALPHA_STEP = 0.5  # deg
 ALPHAS = range(-6, 15, 1)  # deg
 WINGS = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -27,32 +28,34 @@ TAIL = ("fcs/tail-right-rad", "fcs/tail-left-rad")
 
 
 class Free:
-    """The aircraft without its stabiliser, at one wing position."""
+    """The aircraft without its stabiliser, at one wing position; if it is steady, its air knows no α'."""
 
-    def __init__(self, model: Path, wing: float = 1.0) -> None:
+    def __init__(self, model: Path, wing: float = 1.0, *, steady: bool = False) -> None:
         with tempfile.TemporaryDirectory() as folder:
             place = shutil.copytree(model, Path(folder) / model.name)
             text = (place / f"{model.name}.xml").read_text(encoding="utf-8")
             still = "".join(f'<property value="0">{name}</property>' for name in TAIL)
             text = text.replace('<system file="stabiliser"/>', f'<system name="still">{still}</system>')
+            if steady:
+                text = text.replace("<property>aero/alphadot-rad_sec</property>", "<value>0</value>")
             (place / f"{model.name}.xml").write_text(text, encoding="utf-8")
             self.fdm = jsbsim.FGFDMExec(None)
             self.fdm.set_debug_level(0)
             paths = [str(path) for path in (place.parent, place / "engine", place / "systems")]
             if not self.fdm.load_model_with_paths(model.name, *paths, True):
                 raise SystemExit(f"JSBSim does not read {model}")
+        self.height = HEIGHT
         self.fdm.set_dt(DT)
         self.fdm["simulation/integrator/rate/rotational"] = 3
         self.start(np.array([100.0, 0, 0, 0, 0, 0, 0, 0]))
         self.fdm["fcs/wing-cmd-norm"] = 1.0 if wing > 0.0 else 0.0
         while self.fdm["fcs/wing-pos-norm"] < wing:
             self.fdm.run()
-        self.fdm["wing/to-go"] = 0.0  # with the command where the wing is, it stays
-        self.fdm["fcs/wing-cmd-norm"] = self.fdm["wing/phase"]
+        self.fdm["fcs/wing-cmd-norm"] = self.fdm["wing/phase"]  # where it is, it stays
 
     def start(self, state: np.ndarray) -> None:
-        """Set the state, in the order of `STATE`."""
-        self.fdm["ic/h-sl-ft"] = HEIGHT
+        """Set the state, in the order of `STATE`, at `height`."""
+        self.fdm["ic/h-sl-ft"] = self.height
         self.fdm["ic/psi-true-deg"] = 0.0
         for name, value in zip(STATE, state, strict=True):
             self.fdm[f"ic/{name}"] = value
@@ -72,15 +75,27 @@ class Free:
         roots = {"theta-rad": "attitude", "phi-rad": "attitude"}
         return np.array([self.fdm[f"{roots.get(name, 'velocities')}/{name}"] for name in STATE])
 
-    def coefficients(self, alpha_deg: float, beta_deg: float = 0.0) -> np.ndarray:
-        """Lift and pitching moment about the centre of gravity, tail neutral, without rates."""
-        a, b, speed, fdm = math.radians(alpha_deg), math.radians(beta_deg), 32.0 / FOOT, self.fdm
-        self.set_controls(0.0, 0.0)
+    def coefficients(
+        self, alpha_deg: float, beta_deg: float = 0.0, rates: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> np.ndarray:
+        """C_X, C_Y, C_Z, C_l, C_m, C_n in body axes, moments about the centre of gravity; rates in rad/s."""
+        a, b, speed, fdm = math.radians(alpha_deg), math.radians(beta_deg), SPEED / FOOT, self.fdm
         u, v, w = speed * math.cos(a) * math.cos(b), speed * math.sin(b), speed * math.sin(a) * math.cos(b)
-        self.start(np.array([u, w, 0, a, v, 0, 0, 0]))
+        p, q, r = rates
+        self.start(np.array([u, w, q, 0.0, v, p, r, 0.0]))
         force = fdm["aero/qbar-psf"] * fdm["metrics/Sw-sqft"]
-        lift = fdm["forces/fbx-aero-lbs"] * math.sin(a) - fdm["forces/fbz-aero-lbs"] * math.cos(a)
-        return np.array([lift / force, fdm["moments/m-aero-lbsft"] / (force * fdm["metrics/cbarw-ft"])])
+        span, chord = fdm["metrics/bw-ft"], fdm["metrics/cbarw-ft"]
+        forces = [fdm[f"forces/fb{axis}-aero-lbs"] for axis in "xyz"]
+        moments = [
+            fdm[f"moments/{axis}-aero-lbsft"] / arm for axis, arm in zip("lmn", (span, chord, span), strict=True)
+        ]
+        return np.array([*forces, *moments]) / force
+
+    def lift_and_moment(self, alpha_deg: float) -> np.ndarray:
+        """C_L and C_m."""
+        x, _, z, _, moment, _ = self.coefficients(alpha_deg)
+        alpha = math.radians(alpha_deg)
+        return np.array([x * math.sin(alpha) - z * math.cos(alpha), moment])
 
 
 def level(alpha: float, speed: float) -> np.ndarray:
@@ -121,8 +136,8 @@ def roots(free: Free, speed: float) -> tuple[np.ndarray, np.ndarray]:
 def describe(value: complex) -> str:
     """A mode in words."""
     if value.imag:
-        size = abs(value)
-        return f"period {2 * math.pi / value.imag:6.2f} s, {size / (2 * math.pi):5.2f} Hz, damping {-value.real / size:5.3f}"
+        size, turn = abs(value), 2 * math.pi
+        return f"period {turn / value.imag:6.2f} s, {size / turn:5.2f} Hz, damping {-value.real / size:5.3f}"
     if value.real > 0:
         return f"doubles in {math.log(2) / value.real:.1f} s"
     return f"time constant {-1 / value.real:.3f} s"
@@ -150,9 +165,9 @@ def print_margins(model: Path) -> None:
     """Print the static margin over the angle of attack and the wing position, and C_mα of the wing out."""
     print("static margin, % of the chord, tail neutral; last column: C_mα per rad, wing out")
     print("  alpha " + "".join(f"  w={w:4.2f}" for w in WINGS) + "     Cmα")
-    frees = [Free(model, w) for w in WINGS]
+    frees = [Free(model, w, steady=True) for w in WINGS]
     for alpha in ALPHAS:
-        change = [free.coefficients(alpha + ALPHA_STEP) - free.coefficients(alpha - ALPHA_STEP) for free in frees]
+        change = [free.lift_and_moment(alpha + ALPHA_STEP) - free.lift_and_moment(alpha - ALPHA_STEP) for free in frees]
         cells = "".join(f"{-100 * moment / lift:8.1f}" for lift, moment in change)
         print(f"{alpha:5d}° {cells}{change[-1][1] / math.radians(2 * ALPHA_STEP):10.3f}")
 
@@ -160,7 +175,7 @@ def print_margins(model: Path) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Modes and static margin with fixed controls.")
     parser.add_argument("model", nargs="?", default="aircraft/fw8", type=Path, help="folder of the aircraft")
-    parser.add_argument("--speed", type=float, default=32.0, help="m/s")
+    parser.add_argument("--speed", type=float, default=SPEED, help="m/s")
     chosen = parser.parse_args()
     print_modes(chosen.model.resolve(), chosen.speed)
     print_margins(chosen.model.resolve())

@@ -30,7 +30,8 @@ ALPHAS: tuple[int, ...] = (
 )  # deg
 _SIDE = (0, 2, 4, 8, 12, 16, 18, 20, 22, 24, 28, 40, 60, 90, 120, 150, 180, 210)
 LOCAL: tuple[int, ...] = (*(-a for a in reversed(_SIDE[1:])), *_SIDE)  # deg, of the flow at the tail's halves and fin
-SIDESLIPS: tuple[int, ...] = (-90, -70, -50, -35, -20, -10, 0, 10, 20, 35, 50, 70, 90)  # deg, at the fuselage
+_HALF = (5, 10, 20, 35, 50, 70, 90, 110, 130, 150, 165, 180)
+SIDESLIPS: tuple[int, ...] = (*(-a for a in reversed(_HALF)), 0, *_HALF)  # deg, at the fuselage
 HEIGHTS = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5, 2.5, 5.0)  # spans
 SECTION_SLOPE = 2 * math.pi  # a₀, per rad, of a thin section
 RATE_STEP = 0.05  # of p b/2V, q c/2V and r b/2V: 2.9° at the tip of a rolling wing, so that no stall is a spike
@@ -139,13 +140,13 @@ def ground(geometry: Geometry, spans: np.ndarray) -> Tables:
 
 
 def _rolling(wing: asb.Wing) -> float:
-    """Lift slope of a rolling wing over that of the straight one: (A + 2)/(A + 4), Etkin & Reid §3.12 (elliptic)."""
+    """Lift slope of a rolling wing over that of the straight one: (A + 2)/(A + 4), lifting line of elliptic wings."""
     aspect = float(wing.aspect_ratio())
     return (aspect + 2) / (aspect + 4)
 
 
 def _roll_of_sweep(geometry: Geometry, w: float, wing: asb.Wing) -> float:
-    """Rolling moment of a swept wing per CL β: each half's lift goes with cos²(Λ ∓ β), Etkin & Reid §3.12.
+    """Rolling moment of a swept wing per CL β: each half's lift goes with cos²(Λ ∓ β).
 
     tan Λ is held beyond 45°: it grows without bound, while what folds becomes a slender body. Folded this is a quarter
     of CL β by the wing's own span, where slender-wing theory has a third for a delta.
@@ -183,12 +184,23 @@ def _of_local_flow(geometry: Geometry) -> Tables:
     angle = np.array(LOCAL, dtype=float)
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     half = geometry["tail"]["efficiency"] / 2 * Model(geometry, [tail_shape(geometry)]).coefficients(angle)
-    fin = Model(geometry, [fin_shape(geometry)]).coefficients(np.zeros_like(angle), beta=angle)[2]
+    alone = _at_fin_alone(geometry, angle)
+    fin = Model(geometry, [fin_shape(geometry)]).coefficients(np.zeros_like(angle), beta=alone)[2]
     return {
         "tail-normal": half[0] * c + half[1] * s,
         "tail-axial": half[1] * c - half[0] * s,
         "fin-side": (fin - fin[::-1]) / 2,  # odd to the last digit
     }
+
+
+def _at_fin_alone(geometry: Geometry, angle: np.ndarray) -> np.ndarray:
+    """Sideslip (deg) at which the fin alone has the force that it has on its end plate at this one.
+
+    Its slope is that of the larger aspect ratio (Helmbold), it stalls as much earlier, and 90° and 180° stay.
+    """
+    alone = float(fin_shape(geometry).aspect_ratio())
+    slopes = [a / (2 + math.hypot(a, 2)) for a in (alone, alone * geometry["fin"]["end_plate"])]
+    return angle + (slopes[1] / slopes[0] - 1) * np.degrees(np.sin(2 * np.radians(angle))) / 2
 
 
 def _of_side(geometry: Geometry) -> Tables:

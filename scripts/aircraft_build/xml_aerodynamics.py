@@ -6,11 +6,11 @@ the fuselage's side with that in the plane of the wing. Every rate is the body's
 
     tail     α_i = α - ε(α, w) g_ε + (q l + α' l ε_α) cos α / V ± p y cos α / V + δ_i     right half +, left half -
              normal N(α_i) and axial A(α_i) along its own chord, so in body axes N and A + N δ_i
-    fin      β_f = atan2(v - r l + p z, u)
+    fin      β_f = atan2(v - r l + p z, u), the fuselage's side with atan2(v, u)
     ground   over x = (16 h/b)², h: height of the wing above the ground, b: its span as it is now
-             C_Di · φ,  φ = x/(1 + x)              McCormick, Aerodynamics, Aeronautics, and Flight Mechanics, 2nd ed., §7
-             C_L · K,  K = (1 + s)/(1 + s φ)      lifting line whose induced angle is φ of the free one; s = a₀/(π A)
-             ε · g_ε,  g_ε = 1/(1 + (b/4h)²)      images of the trailing vortices, as DATCOM §4.7.1
+             C_Di · φ,  φ = x/(1 + x)            McCormick, Aerodynamics, Aeronautics, and Flight Mechanics, ch. 7
+             C_L · K,  K = (1 + s)/(1 + s φ)     lifting line whose induced angle is φ of the free one; s = a₀/(π A)
+             ε · g_ε,  g_ε = 1/(1 + (b/4h)²)     images of the trailing vortices, wing and tail level (DATCOM §4.7)
 
 A function before the axes is worked out once a step, in this order; the pressures of the planes are of this step there.
 """
@@ -30,7 +30,7 @@ COS, SIN = "aero/cos-alpha", "aero/sin-alpha"
 UPRIGHT, SIDEWAYS = "aero/qbar-area-symmetry", "aero/qbar-area-side"  # q̄ S of the two planes
 GROUND = "aero/ground-spans"  # h/b
 WING_LIFT = "aero/wing-lift"  # C_L of wing and fuselage, far from the ground
-FIN_SLIP, FIN_SIDE = "aero/fin-slip-rad", "aero/fin-side"
+BODY_SLIP, FIN_SLIP, FIN_SIDE = "aero/body-slip-rad", "aero/fin-slip-rad", "aero/fin-side"
 ROLLING, FLOW = "aero/tail-rolling-rad", "aero/tail-flow-rad"  # p y/V, and α_i but for it and δ_i
 RIGHT, LEFT = "aero/tail-right-rad", "aero/tail-left-rad"
 NORMAL_RIGHT, NORMAL_LEFT = "aero/tail-right-normal", "aero/tail-left-normal"
@@ -40,7 +40,7 @@ KEYS = {
     ALPHA_DEG: ALPHAS,
     WING: WING_POSITIONS,
     GROUND: HEIGHTS,
-    BETA: np.radians(SIDESLIPS),
+    BODY_SLIP: np.radians(SIDESLIPS),
     **dict.fromkeys((FIN_SLIP, RIGHT, LEFT), np.radians(LOCAL)),
 }
 """Keys of a table's rows, by the property that they are of."""
@@ -81,10 +81,12 @@ def _flow(t: Tables) -> dict[str, str]:
 
 
 def _fin(geometry: Geometry, t: Tables) -> dict[str, str]:
-    """The flow at the fin, and its side force."""
+    """The flow at the fuselage's side and at the fin, and the fin's side force."""
+    u, v = "velocities/u-aero-fps", "velocities/v-aero-fps"
     rolling, yawing = _product(P, _fin_z(geometry) / FOOT), _product(R, _table("fin-arm", t, WING))
     return {
-        FIN_SLIP: _of("atan2", _sum("velocities/v-aero-fps", rolling, yawing), "velocities/u-aero-fps"),
+        BODY_SLIP: _of("atan2", v, u),
+        FIN_SLIP: _of("atan2", _sum(v, rolling, yawing), u),
         FIN_SIDE: _table("fin-side", t, FIN_SLIP),
     }
 
@@ -117,7 +119,7 @@ def _forces(t: Tables) -> dict[str, dict[str, str]]:
     lift = _sum(wing, _difference(_product(COS, NORMAL), _product(SIN, AXIAL)))
     return {
         "X": {"drag": _product(UPRIGHT, drag)},
-        "Y": {"side": _product(SIDEWAYS, _sum(FIN_SIDE, _table("fuselage-side", t, BETA)))},
+        "Y": {"side": _product(SIDEWAYS, _sum(FIN_SIDE, _table("fuselage-side", t, BODY_SLIP)))},
         "Z": {"lift": _product(UPRIGHT, lift)},
     }
 
@@ -128,16 +130,14 @@ def _moments(geometry: Geometry, t: Tables) -> dict[str, dict[str, str]]:
     y, z = _tail_y(geometry) / ref["span"], _fin_z(geometry) / ref["span"]
     tail = (geometry["tail"]["quarter_chord_x"] - ref["point"][0]) / ref["chord"]
     fin = (geometry["fin"]["quarter_chord_x"] - ref["point"][0]) / ref["span"]
-    turning = {
-        c: _product(BY_SPAN, _sum(_product(P, _table(f"{c}p", t, ALPHA_DEG)), _product(R, _table(f"{c}r", t, ALPHA_DEG))))
-        for c in ("Cl", "Cn")
-    }
+    rolling = _sum(_product(P, _table("Clp", t, ALPHA_DEG)), _product(R, _table("Clr", t, ALPHA_DEG)))
+    yawing = _sum(_product(P, _table("Cnp", t, ALPHA_DEG)), _product(R, _table("Cnr", t, ALPHA_DEG)))
     swept = _product(_table("sweep-roll", t, WING), COS, WING_LIFT, BETA)
-    roll = _sum(swept, turning["Cl"], _product(y, _difference(NORMAL_LEFT, NORMAL_RIGHT)))
+    roll = _sum(swept, _product(BY_SPAN, rolling), _product(y, _difference(NORMAL_LEFT, NORMAL_RIGHT)))
     pitching = _product(BY_CHORD, Q, _table("Cmq", t, WING))
     pitch = _sum(_table("Cm", t, ALPHA_DEG), pitching, _product(-tail, NORMAL))
-    yaw = _sum(turning["Cn"], _product(y, _difference(AXIAL_RIGHT, AXIAL_LEFT)))
-    side = _sum(_product(-fin, FIN_SIDE), _product(COS, _table("fuselage-yaw", t, BETA)))
+    yaw = _sum(_product(BY_SPAN, yawing), _product(y, _difference(AXIAL_RIGHT, AXIAL_LEFT)))
+    side = _sum(_product(-fin, FIN_SIDE), _table("fuselage-yaw", t, BODY_SLIP))
     return {
         "ROLL": {"roll": _product(UPRIGHT, SPAN, roll), "fin-roll": _product(SIDEWAYS, SPAN, z, FIN_SIDE)},
         "PITCH": {"pitch": _product(UPRIGHT, CHORD, pitch)},
@@ -188,7 +188,7 @@ def _operand(operand: Operand) -> str:
 
 
 def _table(name: str, t: Tables, key: str) -> str:
-    """Write a table over its rows' keys, and over the wing position if it has columns; each half of the tail its own."""
+    """Write a table over its rows' keys, and the wing position if it has columns; each half of the tail its own."""
     values = t[name]
     rows = [f"{k:>14.6g}" + "".join(f"{v:>11.5f}" for v in row) for k, row in zip(KEYS[key], values, strict=True)]
     axes = f'<independentVar lookup="row">{key}</independentVar>'
