@@ -15,7 +15,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from aircraft_modes import FOOT, SPEED, WINGS, Free  # noqa: E402 - found by the line above
+from aircraft_modes import FOOT, SPEED, WINGS, Free, roots  # noqa: E402 - found by the line above
 
 FW8 = ROOT / "aircraft" / "fw8"
 MIRRORED = np.array([1, -1, 1, -1, 1, -1])  # of C_X, C_Y, C_Z, C_l, C_m, C_n, left for right
@@ -76,6 +76,22 @@ def test_lift_slope_is_even_about_zero(out: Free) -> None:
     lift = np.array([out.lift_and_moment(alpha)[0] for alpha in range(-4, 5)])
     slope = np.diff(lift)
     assert np.abs(slope / slope.mean() - 1).max() < 0.03
+
+
+def test_modes_with_fixed_controls_are_those_of_a_stable_aircraft() -> None:
+    """Authority: MIL-F-8785C, level 1 of class I: damping of the short period 0.3 to 2, of the phugoid 0.04 or more, of
+    the Dutch roll 0.08 or more at 0.4 rad/s or more; roll within 1.4 s; a spiral that doubles in no less than 12 s.
+    """
+    longitudinal, lateral = roots(Free(FW8), SPEED)
+    phugoid, short = sorted((value for value in longitudinal if value.imag > 0), key=abs)
+    (dutch,) = (value for value in lateral if value.imag > 0)
+    spiral, roll = sorted((value.real for value in lateral if not value.imag), key=abs)
+    assert 0.3 < -short.real / abs(short) < 2
+    assert -phugoid.real / abs(phugoid) > 0.04
+    assert -dutch.real / abs(dutch) > 0.08
+    assert abs(dutch) > 0.4
+    assert -1 / 0.02 < roll < -1 / 1.4
+    assert spiral < math.log(2) / 12
 
 
 # -- stall of tail and fin -----------------------------------------------------------------------------------------

@@ -8,9 +8,9 @@ is in `fuselage.py`. The tail is in the wing's downwash
 where g/4π is the downwash of a horseshoe vortex of unit circulation (Biot-Savart; the span b' of an elliptic wing's
 rolled-up wake, e.g. Katz & Plotkin, Low-Speed Aerodynamics, 2nd ed., §4.9). Derivatives are central differences.
 
-Boundary layers are tripped (`shape.Tripped`). With free transition a NACA 4412 at a Reynolds number of 3.5e5 has a
-laminar bubble that leaves one side as the other gets it: its lift slope goes from 0.10 to 0.13 per degree and back
-within 2° of zero, downwash and tail follow, and the whole aircraft's static margin halves where it cruises.
+Boundary layers are tripped (`shape.Tripped`). With free transition that on the lower side of a NACA 4412 at a Reynolds
+number of 3.4e5 runs from 37 % of the chord at -1° to the trailing edge at 1°: the lift slope goes from 0.10 to 0.13 per
+degree and back, downwash and tail follow, and the whole aircraft's static margin halves where it cruises.
 """
 
 import math
