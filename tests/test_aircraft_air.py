@@ -71,6 +71,14 @@ def test_static_margin_has_no_corner_and_is_at_least_eight_percent(out: Free, ta
     assert np.abs(np.diff(slope[smooth]) / slope[smooth][1:]).max() < 0.25
 
 
+def test_no_corner_in_the_moment_at_any_wing_position(at: Free) -> None:
+    """From -6° to 8° lift grows and C_mα changes by less than a quarter in a degree."""
+    lift, slope = np.diff([at.lift_and_moment(alpha) for alpha in np.arange(-6.5, 8.6, 1.0)], axis=0).T
+    assert lift.min() > 0.0
+    assert slope.max() < 0.0
+    assert np.abs(np.diff(slope) / slope[1:]).max() < 0.25
+
+
 def test_lift_slope_is_even_about_zero(out: Free) -> None:
     """What the corner came from: the wing's lift slope. Within 3 % of its mean from -4° to 4°."""
     lift = np.array([out.lift_and_moment(alpha)[0] for alpha in range(-4, 5)])
@@ -123,6 +131,14 @@ def test_fin_meets_the_flow_of_its_own_place(out: Free) -> None:
     out.coefficients(0.0, 5.0, (p, 0.0, r))
     expected = math.atan2(SPEED * math.sin(beta) - r * behind + p * z, SPEED * math.cos(beta))
     assert out.fdm["aero/fin-slip-rad"] == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize(("alpha", "beta", "slip"), [(0, 20, 20), (170, 20, 159.7), (-170, -20, -159.7)])
+def test_flow_from_behind_meets_fin_and_body_from_behind(out: Free, alpha: float, beta: float, slip: float) -> None:
+    """Authority: atan2(sin β, cos α cos β)."""
+    out.coefficients(alpha, beta)
+    for part in ("body", "fin"):
+        assert math.degrees(out.fdm[f"aero/{part}-slip-rad"]) == pytest.approx(slip, abs=0.1)
 
 
 def test_tail_stalls_with_its_local_angle(out: Free) -> None:
