@@ -1,4 +1,4 @@
-"""The fuselage: a body of revolution at any angle to the flow, after Jorgensen, NASA TR R-474 (1977), §2.
+"""The fuselage: a body of revolution at any angle to the flow, after Jorgensen, NASA TR R-474 (1977).
 
     C_N A = A_b sin 2α' cos(α'/2) + η c_d A_p sin² α'            α' = α up to 90°, 180° - α beyond
     C_m A = ±(V - A_b (l - x_m)) sin 2α' cos(α'/2) + η c_d A_p (x_m - x_c) sin² α'      + up to 90°, - beyond
@@ -16,8 +16,8 @@ import numpy as np
 
 from .geometry import Geometry
 
-CYLINDER_DRAG = 1.2  # c_d across the flow below the drag crisis (Jorgensen, fig. 2)
-SHARE = 0.68  # η at a fineness of 9 (Jorgensen, fig. 3): flow gets round the ends
+CYLINDER_DRAG = 1.2  # c_d across the flow below the drag crisis (Jorgensen, table 1)
+SHARE = 0.67  # η at a fineness of 9, from a fit to Jorgensen's figure: the flow gets round the ends
 
 
 class Fuselage:
