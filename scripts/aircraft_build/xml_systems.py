@@ -13,11 +13,14 @@ LB_PER_SLUG = 32.174049  # standard gravity in ft/s²
 PA_TO_PSF = 1.0 / 47.880259  # lbf/ft²
 SEA_LEVEL_DENSITY = 1.225  # kg/m³, standard atmosphere
 
+AIR = "".join(f'    <property value="0">air/{axis}-rad_sec</property>\n' for axis in "pqr")
+"""Rotation of the air about the body's axes, which the simulation sets: the damping is of the difference."""
+
 
 def systems_xml(geometry: Geometry, t: Tables) -> str:
     """Write the system of constants and trim, and name the hand-written ones."""
     return (
-        f'  <system name="constants">\n{_constants(geometry)}{_trim(geometry, t)}  </system>\n'
+        f'  <system name="constants">\n{_constants(geometry)}{AIR}{_trim(geometry, t)}  </system>\n'
         '  <system file="wing"/>\n  <system file="stabiliser"/>\n'
     )
 
