@@ -66,9 +66,7 @@ WING_OUT = 0.99
 
 INCHES = 12.0  # in a foot
 STILL = 1e-4  # in/s of airspeed, below which its quotient with the Mach number is not taken for the speed of sound
-BEYOND = (
-    1e11  # (in/s)², 8 km/s beside the centre of gravity: nothing turns like that but what is about to diverge
-)
+BEYOND = 1e11  # (in/s)², 8 km/s beside the centre of gravity: nothing turns like that but what is about to diverge
 CONTACT = re.compile(r"(gear|contact)/unit(\[\d+\])?/WOW")  # whether a wheel or another point of it is on the ground
 
 RATES_BY = ("simulation/integrator/rate/rotational", "simulation/integrator/rate/translational")
