@@ -253,7 +253,7 @@ def test_several_flights(run: Run, tmp_path: Path) -> None:
         ("weak-launch", ["expect=cruise"], "missed_launch"),
         ("catapult", ["duration=6", "requirements=[]"], "timeout"),
         ("catapult", ["duration=5", "expect=timeout", 'requirements=[{key="airspeed.rmse", maximum=1e-6}]'], "timeout"),
-        ("catapult", ["duration=5", "aircraft.properties.metrics/Sw-sqft=1e6"], "diverged"),
+        ("catapult", ["duration=5", "aircraft.properties.metrics/Sw-sqft=1e9"], "diverged"),
     ],
 )
 def test_another_outcome_or_an_unmet_requirement_is_1_with_everything_written(

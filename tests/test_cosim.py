@@ -216,7 +216,7 @@ def test_replay_of_its_own_readings_gives_the_flight(way: str, tmp_path: Path) -
 
 def test_replay_of_a_flight_that_was_ended_says_how_it_ended() -> None:
     """Its truth alone does not tell: it stops, and no crash is in it."""
-    vast = "aircraft.properties.metrics/Sw-sqft=1e6"
+    vast = "aircraft.properties.metrics/Sw-sqft=1e9"
     flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", vast])
     assert flight.score["outcome"] == "diverged"
     assert replay(flight).score == flight.score
@@ -333,6 +333,7 @@ def test_nan_in_every_truth_column_that_no_sensor_reads_changes_nothing(scenario
     shown = {name for name, values in poisoned.truth().items() if np.isfinite(values[1:]).all()}
     assert shown >= {"cg_x", "cg_y", "cg_z"}  # where it is, and not a column of a flight
     shown -= {"cg_x", "cg_y", "cg_z"}
+    shown -= {name for name in shown if name.startswith(("mean_wind_", "gust_", "air_"))}  # the air's own record
     assert shown == {"t", *FELT} - {"fx", "fy", "fz"}  # the force is handed on as it is felt, not by the record
     assert len(clean[3]) == 4  # it flew all the way to the motor
 
@@ -562,7 +563,7 @@ def test_under_the_cover_the_airspeed_is_0_and_invalid(wind: str) -> None:
     assert (covered["airspeed_sd"] == 3.0).all()
     seen = e[(e["t"] > release - 0.45) & (e["t"] <= release)]
     if wind.endswith("=6"):
-        assert seen["airspeed"].mean() == pytest.approx(6.0, abs=0.5)
+        assert seen["airspeed"].mean() == pytest.approx(4.28, abs=0.5)  # 6 m/s at 20 ft, by the law at 1.5 m
     else:
         assert (seen["airspeed"] > 0.0).any()
         assert not seen["valid"].any()

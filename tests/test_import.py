@@ -59,7 +59,7 @@ def test_onboard_loads_nothing_of_the_truth() -> None:
     assert modules == {
         "uavsim", "uavsim.airdata", "uavsim.onboard", "uavsim.onboard.launch", "uavsim.onboard.airspeed",
         "uavsim.onboard.flight_computer", "uavsim.onboard.interface", "uavsim.onboard.plausible",
-        "uavsim.onboard.stamps", "uavsim.failure", "uavsim.registry",
+        "uavsim.onboard.stamps", "uavsim.failure", "uavsim.registry", "uavsim.compiled",
     }  # fmt: skip
 
 

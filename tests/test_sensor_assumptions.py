@@ -21,6 +21,7 @@ IDEAL = (
     "accelerometer.errors.drift=0",
     "accelerometer.errors.random_walk=0",
     "accelerometer.errors.bandwidth=false",
+    "air_data.position=[0,0,0]",  # next to the centre of gravity, whose flow the truth is
     "air_data.total.unit=ideal",
     "air_data.static.unit=ideal",
     "air_data.total.noise_scale=0",

@@ -208,6 +208,7 @@ def _score(flight: Judged) -> dict[str, Any]:
         "pressure": {name: _pressure(flight, name) for name in PRESSURES},
         "flight": _flight(flight),
         "requirements": [],
+        "remarks": [],
     }
     result["requirements"] = [_requirement(result, r) for r in flight.scenario.requirements]
     return result

@@ -411,7 +411,7 @@ def test_processor_features_are_those_of_floating_point(tmp_path: Path) -> None:
 
 def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_path: Path) -> None:
     """A wing that JSBSim cannot fly: two rows of truth, neither of them a number."""
-    vast = "aircraft.properties.metrics/Sw-sqft=1e6"
+    vast = "aircraft.properties.metrics/Sw-sqft=1e9"
     flight = uavsim.fly("catapult", seed=1, overrides=["duration=5", vast])
     assert flight.score["outcome"] == "diverged"
     assert plots.save_plots(flight, tmp_path) == []

@@ -127,6 +127,7 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
         "pressure": {name: dict.fromkeys(PRESSURE) for name in PRESSURES},
         "flight": {**dict.fromkeys(FLIGHT), "duration": end - start},
         "requirements": [],
+        "remarks": [],
         "recording": {
             "files": list(recording.files),
             "map": recording.mapping,
