@@ -20,6 +20,7 @@ from uavsim.plants.plant import Run
 from uavsim.plants.prescribed import PrescribedPlant
 from uavsim.plugins import REGISTRIES, PluginError, find
 from uavsim.scenario import Scenario, load_scenario
+from uavsim.truth import OF_AIR
 
 SHORT = ("duration=6", "launcher.wait_min=2.5", "launcher.wait_max=2.6", "expect=timeout")
 PLUGIN = """
@@ -658,6 +659,19 @@ def test_news_may_be_a_list_of_its_own_that_is_replaced() -> None:
     flight = uavsim.fly("catapult", overrides=SHORT, estimator=Tells)
     assert {e["channel"] for e in flight.events if e["event"] == "airspeed_note"} == {"total"}
     assert uavsim.onboard.airspeed.Estimator().news == []
+
+
+def test_a_plant_need_not_know_what_the_airs_motion_is_made_of_and_may_remark() -> None:
+    def truth(self: Any) -> dict[str, Any]:
+        return {name: column for name, column in Bench.truth(self).items() if name not in OF_AIR}
+
+    plain = type("Plain", (Bench,), {"truth": truth, "remarks": ["on a\nbench"]})
+    flight = uavsim.fly("catapult", overrides=(*SHORT, "expect=completed"), plant=plain)
+    assert flight.score["outcome"] == "completed"
+    assert flight.truth[list(OF_AIR)].isna().all().all()
+    assert flight.score["remarks"] == ["on a bench"]
+    mute = type("Mute", (Bench,), {"remarks": property(lambda self: 1 / 0)})
+    assert uavsim.fly("catapult", overrides=(*SHORT, "expect=completed"), plant=mute).score["remarks"] == []
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,9 @@ UNITS: dict[str, str] = {
 }
 """Name of each numeric truth column and its unit, in the order they are written; `phase` (text) follows."""
 
+OF_AIR = ("mean_wind_n", "mean_wind_e", "gust_n", "gust_e", "gust_d", "air_p", "air_q", "air_r")
+"""The columns that say what the air's motion is made of. A plant of somebody else's need not know."""
+
 FELT = (
     "fx", "fy", "fz", "p_static", "p_total", "temperature", "airspeed", "mach", "alpha", "beta", "p", "q", "r",
 )  # fmt: skip

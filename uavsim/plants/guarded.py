@@ -1,6 +1,7 @@
 """Plants that are not ours: what they raise, and truth that is none, ends the flight with a reason."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from math import isinf
 from typing import Any
 
@@ -9,8 +10,9 @@ from numpy.typing import NDArray
 
 from uavsim.failure import PartError, blamed, said, shown
 from uavsim.plants.plant import Commands, Plant, Run, Vector
-from uavsim.truth import UNITS
+from uavsim.truth import OF_AIR, UNITS
 
+MOST_REMARKS, LONGEST_REMARK = 20, 300
 Flow = tuple[float, float, float, float, float, float, float]
 
 
@@ -72,13 +74,22 @@ class GuardedPlant:
         try:
             given = dict(self._plant.truth())
             for name, column in columns.items():
-                column[:] = np.asarray(given[name], dtype=np.float64)
+                if name in given or name not in OF_AIR:
+                    column[:] = np.asarray(given[name], dtype=np.float64)
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # noqa: BLE001 (the flight is over; what is known of it is kept)
             self.problem = f"{self._part} has no whole truth after {rows} rows: {said(error)}"
         columns["t"] = np.arange(rows) / self.rate
         return columns
+
+    @property
+    def remarks(self) -> list[str]:
+        """What it says that deserves a word; nothing if it cannot."""
+        with suppress(PartError):
+            said = self._asked(lambda: list(map(str, getattr(self._plant, "remarks", ()))))
+            return [" ".join(line.split())[:LONGEST_REMARK] for line in said[:MOST_REMARKS]]
+        return []
 
     def _look(self) -> None:
         plant = self._plant

@@ -34,6 +34,8 @@ class Plant(Protocol):
         Whether it can go on: the altitude is a number and above the ground, and nothing of it touches that.
     failure
         What ended it from inside, one line; empty as long as it goes on.
+
+    It may have `remarks`, a list of lines that deserve a word at the start and, with more of them, at the end.
     """
 
     k: int
@@ -66,7 +68,7 @@ class Plant(Protocol):
         """
 
     def truth(self) -> dict[str, NDArray[np.float64]]:
-        """Columns of the truth, SI, one value a step, the first at time 0."""
+        """Columns of the truth, SI, one value a step, the first at time 0; those of `uavsim.truth.OF_AIR` may lack."""
 
 
 @dataclass(frozen=True, slots=True)
