@@ -168,10 +168,11 @@ class JsbsimPlant:
         )
         self._moving.tell("time", 0.0)
         self._moving.tell("release", settings.release_time)
-        self._wind_to = [self._node(name).set_double_value for name in _WIND]
-        turns = all(name in self._catalogue for name in _TURN)
-        self._turn_to = [self._node(name).set_double_value for name in _TURN] if turns else []
-        self._blown: Iterator[list[float]] | None = None
+        self._turns = all(name in self._catalogue for name in _TURN)
+        names = (*_WIND, *_TURN) if self._turns else _WIND
+        told: list[Callable[[float], object]] = [self._node(name).set_double_value for name in names]
+        self._air_to = told + [float] * (len(_WIND) + len(_TURN) - len(told))  # an aircraft without turns is told none
+        self._blown: Iterator[tuple[float, ...]] | None = None
         self._attended = True
         self._left: int | None = None  # step at which it has left the rail
         self._datum = self.row
@@ -312,13 +313,15 @@ class JsbsimPlant:
         )
 
     def _settle(self) -> None:
+        if self._moving.active:
+            self._blown = self._moving.motion(-self._settling * self.dt, self._state)
         loads, counted = 0.0, round(SETTLED * self.settings.step_rate)
         for k in range(-self._settling, 0):
             forces = self._hold(k * self.dt)
             if k >= -counted:
                 loads += (forces.front_normal + forces.rear_normal) / counted
-            if self._moving.active:
-                self._blow(k * self.dt)
+            if self._blown is not None:
+                self._blow(self._blown)
             try:
                 self._run()
             except (BaseError, RuntimeError) as error:
@@ -341,11 +344,14 @@ class JsbsimPlant:
                 self._moving.tell("wings-commanded", self.t)
             if commands[1] > 0.0:
                 self._moving.tell("motor-on", self.t)
+            self._attended = True
 
     def step(self) -> None:
         """Advance by one step and record it."""
         if self._attended:
             self._attend()
+        if self._blown is not None:
+            self._blow(self._blown)
         try:
             self._run()
         except (BaseError, RuntimeError) as error:  # of the aircraft's own functions
@@ -364,6 +370,10 @@ class JsbsimPlant:
         if self._attended:
             self.row = self._read()
             self._attend()
+        if self._blown is not None:
+            if self._moving.blows:
+                self.row = self._read()
+            self._blow(self._blown)
         self._run()
         self.k += 1
         self.t = self.k / self._rate
@@ -385,35 +395,32 @@ class JsbsimPlant:
         self._acted = now
 
     def _attend(self) -> None:
-        """Look after what is not always there: the rail, and air that moves."""
+        """Look after what is not always there: the rail, gusts that wait for an event, air that begins to move."""
         moving = self._moving
         if self.on_rail:
             self._hold(self.t)
         elif self._left is not None:
             self._fly_free(self._left)
-        awaited = moving.gusts.awaited
-        if awaited and self.row[WING] >= WING_OUT:
+        if moving.gusts.awaited and self.row[WING] >= WING_OUT:
             moving.tell("wing-out", self.t)
-        if moving.active:
-            self._blow(self.t)
-        self._attended = self.on_rail or self._left is not None or moving.active or bool(awaited)
+        if moving.active and self._blown is None:
+            self._blown = moving.motion(self.t, self._state)
+        self._attended = self.on_rail or self._left is not None or bool(moving.gusts.awaited)
 
-    def _blow(self, time: float) -> None:
-        """Let the air move through the step that begins at `time`."""
-        if self._blown is None:
-            self._blown = self._moving.motion(time, self._state)
-        north, east, down, p, q, r = next(self._blown)
-        if not self._moving.active:
-            self._blown = None  # until another gust comes; then it begins there
-        to_north, to_east, to_down = self._wind_to
+    def _blow(self, blown: Iterator[tuple[float, ...]]) -> None:
+        """Let the air move through the step that begins."""
+        motion = next(blown, None)
+        if motion is None:  # the last gust is over, and until another one comes
+            self._blown = None
+            return
+        north, east, down, p, q, r, _, _ = motion
+        to_north, to_east, to_down, turn_p, turn_q, turn_r = self._air_to
         to_north(north / FT)
         to_east(east / FT)
         to_down(down / FT)
-        if self._turn_to:
-            turn_p, turn_q, turn_r = self._turn_to
-            turn_p(p)
-            turn_q(q)
-            turn_r(r)
+        turn_p(p)
+        turn_q(q)
+        turn_r(r)
 
     def _state(self) -> AirState:
         """What the air is told of the aircraft."""
@@ -599,7 +606,7 @@ class JsbsimPlant:
     def remarks(self) -> list[str]:
         """What deserves a word: a line each, more of them at the end than at the start."""
         said = list(self._doubts)
-        if self.settings.environment.turbulence_wind_20ft > 0.0 and not self._turn_to:
+        if self.settings.environment.turbulence_wind_20ft > 0.0 and not self._turns:
             said.append(
                 f"{self.settings.aircraft.model} flies without the turbulence's rotation (p, q, r): it has no "
                 f"{', '.join(_TURN)} that its damping reads"

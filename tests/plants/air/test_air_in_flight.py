@@ -199,4 +199,4 @@ def test_without_a_compiler_the_air_is_the_same() -> None:
         printed = subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
         found.append([[float(value) for value in line.split()] for line in printed.splitlines()])
     assert np.array(found[0]) == pytest.approx(np.array(found[1]), rel=1e-12, abs=1e-12)
-    assert len(found[0]) == 40
+    assert len(found[0]) == 80

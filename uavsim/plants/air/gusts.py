@@ -64,25 +64,26 @@ class Gusts:
     environment : EnvironmentSettings
     heading_deg : float
         Of the rail.
+
+    Attributes
+    ----------
+    all : list of Waiting
+    awaited : set of str
+        Events that gusts still wait for.
     """
 
     def __init__(self, environment: EnvironmentSettings, heading_deg: float) -> None:
         heading = radians(heading_deg)
         self.all = [Waiting(gust, _scaled(direction(gust, heading), gust.speed)) for gust in environment.all_gusts]
-        self._waiting: set[str] = {gust.gust.at for gust in self.all}
+        self.awaited: set[str] = {gust.gust.at for gust in self.all}
 
     def tell(self, event: str, time: float) -> None:
         """Say that an event has come; only the first of its kind counts."""
-        if event in self._waiting:
-            self._waiting.discard(event)
+        if event in self.awaited:
+            self.awaited.discard(event)
             for gust in self.all:
                 if gust.gust.at == event:
                     gust.begin = time + gust.gust.delay
-
-    @property
-    def awaited(self) -> set[str]:
-        """Events that gusts still wait for."""
-        return self._waiting
 
     def following(self, time: float) -> float:
         """Return when the next gust begins, s: `time` where one blows, inf where none is to come."""

@@ -1,12 +1,13 @@
 """The air's motion at the aircraft: mean wind, turbulence and gusts, a step at a time.
 
-Every 10 ms the filters of the turbulence are set to the airspeed and the height, and run ahead over the steps up to the
+Every 20 ms the filters of the turbulence are set to the airspeed and the height, and run ahead over the steps up to the
 next; within these the height goes on as the aircraft climbs, and wind and intensity go by it step by step. What they
 give at a step's beginning blows through that step.
 """
 
 from collections.abc import Callable, Iterator
 from math import cos, exp, expm1, inf, pi, sin, sqrt
+from struct import Struct
 from typing import NamedTuple
 
 import numpy as np
@@ -35,12 +36,13 @@ from uavsim.plants.air.gusts import Gusts
 from uavsim.plants.air.settings import EnvironmentSettings
 from uavsim.plants.air.wind import speed_at, towards_at
 
-AHEAD = 0.010  # s that the filters run ahead
+AHEAD = 0.020  # s that the filters run ahead
 DRAWN = 1000  # steps for which normal numbers are drawn at once
 COLUMNS = 8  # of the air's record: north, east, down, m/s; p, q, r, rad/s; mean wind to north and east, m/s
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
+ROW = Struct(f"{COLUMNS}d")
 NO_NOISE = np.zeros((0, STATES))
 
 # Where the air's numbers and memory stand in one array, which costs a call less than many: the mean wind's law, W₂₀,
@@ -209,29 +211,37 @@ class MovingAir:
         self.active, self._told = self.blows, False
         self._rate, self._ahead = step_rate, max(1, round(AHEAD * step_rate))
         self._random = [np.random.Generator(np.random.PCG64(s)) for s in np.random.SeedSequence(seed).spawn(2)]
-        self._noise = [np.zeros((0, STATES))] * 2
-        self._used = [0, 0]
+        self._noise: list[Iterator[Array]] = [iter(()), iter(())]
+        self._run = blow.code  # called every 20 ms: a look-up less
         self._box = np.zeros(BOX)
         self._box[:8] = *wind.law(environment), environment.turbulence_wind_20ft, span, 1.0 / step_rate
         self._record = np.zeros((steps + self._ahead if self.blows else 0, COLUMNS))
         self._size = 0
 
-    def motion(self, time: float, state: Callable[[], State]) -> Iterator[list[float]]:
-        """Yield, step by step, the air's velocity, m/s, north-east-down, and its rotation, rad/s, body axes.
+    def motion(self, time: float, state: Callable[[], State]) -> Iterator[tuple[float, ...]]:
+        """Yield step by step what blows through it, `COLUMNS` with the gusts; it ends when there is none to come.
 
         Parameters
         ----------
         time : float
             At which the first step begins, s.
         state : callable
-            Tells of the aircraft; asked every 10 ms.
+            Tells of the aircraft; asked every 20 ms.
         """
-        first = round(time * self._rate)
+        first, gusts = round(time * self._rate), self.gusts
         while True:
-            block = self.ahead(state())[:, :6] if self.blows else np.zeros((self._ahead, 6))
-            times, done = np.arange(first, first + self._ahead) / self._rate, 0  # the plant's own, to the last digit
+            times = np.arange(first, first + self._ahead) / self._rate  # the plant's own, to the last digit
             first += self._ahead
-            self.active = self.blows or self.gusts.following(float(times[0])) < inf
+            waits = gusts.following(float(times[0])) < inf
+            if not self.blows and not waits:
+                self.active = False
+                yield ROW.unpack(bytes(ROW.size))
+                return
+            block = self.ahead(state()) if self.blows else np.zeros((self._ahead, COLUMNS))
+            if not waits and not gusts.awaited:
+                yield from ROW.iter_unpack(block.data)  # nothing can come between
+                continue
+            done = 0
             while done < len(block):
                 self._told = False
                 for row in self._with_gusts(block[done:], times[done:]):
@@ -240,26 +250,25 @@ class MovingAir:
                     if self._told:
                         break
 
-    def _with_gusts(self, block: Array, times: Array) -> list[list[float]]:
+    def _with_gusts(self, block: Array, times: Array) -> Iterator[tuple[float, ...]]:
         """Return the rows of a block, of steps that begin at `times`, with the gusts that blow then."""
-        if self.gusts.following(float(times[0])) > times[-1]:
-            rows: list[list[float]] = block.tolist()
-            return rows
-        blown = block.copy()
-        blown[:, :3] += self.gusts.over(times)
-        return blown.tolist()  # type: ignore[no-any-return]
+        if self.gusts.following(float(times[0])) <= times[-1]:
+            block = block.copy()
+            block[:, :3] += self.gusts.over(times)
+        return ROW.iter_unpack(block.data)
 
     def ahead(self, state: State) -> Array:
-        """Return what blows through each of the steps of the next 10 ms, gusts apart: rows of `COLUMNS`."""
-        if self._rough and not self._size:
+        """Return what blows through each of the steps of the next 20 ms, gusts apart: rows of `COLUMNS`."""
+        if not self._size and self._rough:
             self._begin(state)
-        is_high = self._rough and state.height > LOW * FOOT
         if self._size + self._ahead > len(self._record):  # flown for longer than was said
             self._record = np.concatenate([self._record, np.zeros((max(DRAWN, len(self._record)), COLUMNS))])
         out = self._record[self._size : self._size + self._ahead]
-        upper = sd_above(state.height, self._severity) if is_high else 0.0
-        blow(out, self._box, self._normal(0, self._rough), self._normal(1, is_high), *state, upper)
-        self._size += len(out)
+        low, high, upper = self._normal(0) if self._rough else NO_NOISE, NO_NOISE, 0.0
+        if self._rough and state.height > LOW * FOOT:
+            high, upper = self._normal(1), sd_above(state.height, self._severity)
+        self._run(out, self._box, low, high, *state, upper)
+        self._size += self._ahead
         return out
 
     def tell(self, event: str, time: float) -> None:
@@ -286,17 +295,14 @@ class MovingAir:
         named |= {f"gust_{axis}": gust[:, i] for i, axis in enumerate("ned")}
         return named | {f"air_{axis}": rows[:, 3 + i] for i, axis in enumerate("pqr")}
 
-    def _normal(self, which: int, wanted: bool) -> Array:
-        """Return the normal numbers of a block's steps; none where none are wanted."""
-        if not wanted:
-            return NO_NOISE
-        if self._used[which] + self._ahead > len(self._noise[which]):
-            rows = -(-DRAWN // self._ahead) * self._ahead
-            self._noise[which] = self._random[which].standard_normal((rows, STATES))
-            self._used[which] = 0
-        begin = self._used[which]
-        self._used[which] = begin + self._ahead
-        return self._noise[which][begin : begin + self._ahead]
+    def _normal(self, which: int) -> Array:
+        """Return the normal numbers of a block's steps, for low altitude, 0, or high, 1."""
+        block = next(self._noise[which], None)
+        if block is None:
+            rows = (-(-DRAWN // self._ahead), self._ahead, STATES)
+            self._noise[which] = iter(self._random[which].standard_normal(rows))
+            block = next(self._noise[which])
+        return block
 
     def _begin(self, state: State) -> None:
         """Draw filters that have run for ever at the airspeed and height of the beginning."""
