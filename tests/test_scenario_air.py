@@ -125,3 +125,8 @@ def test_a_rig_says_that_no_wind_reaches_it() -> None:
     (remark,) = Cosimulation(load_scenario("launch-curve", overrides=["environment.wind_speed=3"])).remarks
     assert remark == "plant.kind = 'launch-curve' is a rig: wind, turbulence and gusts do not reach it"
     assert Cosimulation(load_scenario("launch-curve")).remarks == []
+
+
+def test_how_the_air_turns_is_not_an_aircrafts_property() -> None:
+    with pytest.raises(ValueError, match=r"aircraft\.properties\.air/p-rad_sec: is how the air turns"):
+        load_scenario("catapult", overrides=["aircraft.properties.air/p-rad_sec=1"])

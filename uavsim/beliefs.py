@@ -20,6 +20,7 @@ from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.plants.air.dryden import FOOT, LOWEST, deviations, lengths
 from uavsim.plants.air.settings import EnvironmentSettings
 from uavsim.plants.air.weather import at_ground
+from uavsim.plants.air.wind import growth
 from uavsim.scenario import MismatchSettings, Scenario
 
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
@@ -80,6 +81,8 @@ def believed_air(scenario: Scenario) -> EstimatorSettings:
         settings = replace(settings, vapour_fraction=belief.humidity * at_ground(scenario.environment).vapour_fraction)
     height = max(scenario.flight_computer.height, LOWEST * FOOT)
     sd, length = turbulence(scenario.environment, height, scenario.launcher.heading_deg)
+    shear = belief.gust * growth(scenario.environment, height)
+    settings = replace(settings, aided=replace(settings.aided, shear=shear)) if shear > 0.0 else settings
     sd *= belief.gust
     if not sd > 0.0:
         return settings

@@ -51,6 +51,7 @@ Outcome = Literal[
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
+OF_THE_AIR = "air"  # root of what the plant tells an aircraft of the air's rotation
 OPTIONS = ("detector.options.", "estimator.options.", "plant.options.")  # keys that a plug-in declares
 WEATHER = "environment.preset"
 MOST_STEPS = 3_600_000  # of the plant in a flight, an hour at the coarsest step; their truth takes 2 GB
@@ -106,7 +107,7 @@ class MismatchSettings:
     accelerometer_lag : float
         Factor on the age of a reading of specific force at its time stamp.
     gust : float
-        Factor on the standard deviation of the turbulence that the environment declares.
+        Factor on the standard deviation of the turbulence that the environment declares, and on the mean wind's growth.
     humidity : float
         Factor on the share of vapour in the air.
     """
@@ -455,6 +456,10 @@ def _replaced(group: Any, path: list[str], value: Any) -> Any:
 def _check_properties(s: Scenario) -> None:
     for name in s.aircraft.properties:
         root = name.strip("/").partition("/")[0].partition("[")[0]
+        if root == OF_THE_AIR:
+            raise SettingError(
+                f"{PROPERTIES}{name}: is how the air turns, which turbulence says; it may not be set", PROPERTIES + name
+            )
         if root in OF_SIMULATOR:
             raise SettingError(
                 f"{PROPERTIES}{name}: is JSBSim's own, not a property of an aircraft; it may not set {root}/…",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from uavsim.onboard.airspeed import AidedFilter, AidedSettings, EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.gust import LOWEST, gust_density
+from uavsim.onboard.airspeed.gust import LOWEST, gust_density, shear_density
 from uavsim.onboard.airspeed.rest_wind import HIDDEN, turning, wind_at_rest
 
 DENSITY = 1.225
@@ -100,3 +100,12 @@ def test_without_a_height_they_are_the_same_everywhere() -> None:
     plain = AidedSettings(gust_sd=1.0, gust_length=100.0)
     assert gust_density(plain, 3.0) == gust_density(plain, 300.0) == pytest.approx(0.02)
     assert gust_density(AidedSettings(), 3.0) == pytest.approx(2.0 * 0.04 / 200.0)
+
+
+def test_the_airspeed_wanders_by_the_winds_growth_while_it_climbs() -> None:
+    """w² |ḣ|/h a second, ḣ = V s/g: 2.4 m/s a factor e, 3 m/s² · V/g, 12 m: 2.4² · 3/(9.80665 · 12) m/s² of density."""
+    grows = AidedSettings(shear=2.4)
+    assert shear_density(grows, 12.0, 3.0) == pytest.approx(2.4**2 * 3.0 / (9.80665 * 12.0), rel=1e-12)
+    assert shear_density(grows, 12.0, -3.0) == shear_density(grows, 12.0, 3.0)
+    assert shear_density(grows, 1.0, 3.0) == shear_density(grows, LOWEST, 3.0)
+    assert shear_density(grows, 12.0, 0.0) == shear_density(AidedSettings(), 12.0, 3.0) == 0.0

@@ -69,7 +69,7 @@ from uavsim.truth import STANDARD_GRAVITY
 SETTLING_TIME = 1.0  # s on the latched rail before the record starts, for the shoes to come to rest
 SETTLED = 0.5  # s of it, at whose end the shoes are at rest
 WING_OUT = 0.99
-DRIED = 0.02  # share of the vapour that may be lost before it is remarked on: two laws of saturation differ by 0.6 %
+DRIED = 0.02  # share of the vapour that may be lost before it is refused: two laws of saturation differ by 0.6 %
 
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
 _TURN = ("air/p-rad_sec", "air/q-rad_sec", "air/r-rad_sec")  # of the air, which an aircraft's damping may read
@@ -257,7 +257,7 @@ class JsbsimPlant:
             self._set("atmosphere/vapor-fraction-ppm", 1000.0 * grams)
             kept = self._value("atmosphere/vapor-fraction-ppm") / 1000.0
             if kept < (1.0 - DRIED) * grams:
-                self._doubts.append(
+                raise ValueError(
                     f"environment.humidity = {environment.humidity:g} is {grams:.0f} g of vapour per kg of dry air, "
                     f"and JSBSim's air holds no more than {kept:.0f}"
                 )

@@ -90,6 +90,8 @@ def _bias(flight: "Flight", scenario: Scenario) -> str:
     airspeed = flight.score["airspeed"]
     if not airspeed["rmse"] or abs(airspeed["bias"]) < MOSTLY * airspeed["rmse"]:
         return ""
+    if airspeed["rmse_raw"] is not None and abs(airspeed["bias"]) > airspeed["rmse_raw"]:
+        return ""  # the readings have no such bias: the filter is wrong
     if set_faults(scenario):
         return f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, a fault having been set."
     return (

@@ -135,7 +135,7 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_either", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
+        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
         "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_stamps",
         "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps", "_sudden", "_t",
         "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance",
@@ -173,7 +173,7 @@ class AidedFilter(Estimator):
         self._unfolding = Unfolding(aided)
         self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
-        self.flying = self._apart = self._either = False
+        self.flying = self._apart = False
         self._steps, self._read = 0, -inf
         self.time = self._t = -inf
         self._tare, self._push_variance, self._steady_from = 0.0, 0.0, inf
@@ -351,7 +351,7 @@ class AidedFilter(Estimator):
         self._u, self._w = self._gained.at(start)
         self._push.forget()
         self._onset.begin(patience)
-        self._push_variance, self._steady_from, self._either = 0.0, steady_from, False
+        self._push_variance, self._steady_from = 0.0, steady_from
         self._total_spikes.forget()
         self._static_spikes.forget()
         self.ports.begin(self._rows)
@@ -375,13 +375,11 @@ class AidedFilter(Estimator):
             air.measured = True
         else:
             temperature = nan
-        air.at(energy.p)
+        air.at(energy.p, energy.s)
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
         total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
-        if JUMPED in (total, static):
-            self._either = True
-            if self.time > self._steady_from:
-                ports.jumped(t, energy, total == JUMPED, static == JUMPED)
+        if JUMPED in (total, static) and self.time > self._steady_from:
+            ports.jumped(t, energy, total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
         nis_total, nis_static = self._take(p_total, p_static, end_total, end_static, new_total > 0, new_static > 0)
@@ -513,10 +511,8 @@ class AidedFilter(Estimator):
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.widen_speed((energy.innovation / slope) ** 2)
-        if self._either and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
-            self._either = False
-            if energy.v < 0.0:  # the pressure is that of −V, too, and an aircraft flies forward
-                energy.restart(-energy.v, energy.vv)
+        if energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
+            energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
             self.ports.seen_total = tared, nis
         return nis

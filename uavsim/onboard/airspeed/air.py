@@ -7,10 +7,9 @@ vapour that is known of.
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_TEMPERATURE
 from uavsim.onboard.airspeed.energy import SEVEN_R
 from uavsim.onboard.airspeed.energy_model import isentropic_speed
-from uavsim.onboard.airspeed.gust import gust_density
+from uavsim.onboard.airspeed.gust import GRAVITY, gust_density, shear_density
 from uavsim.onboard.airspeed.settings import AidedSettings
 
-GRAVITY = 9.80665  # m/s², ISO 80000-3
 SLOWEST = 1.0  # m/s; below it the gust's correlation time is that of this airspeed
 
 
@@ -37,7 +36,9 @@ class Air:
     density : float
         ρ, kg/m³.
     gust : float
-        2 σ²/L of the gusts, m/s².
+        2 σ²/L of the gusts, with the growth of the mean wind in a climb, m/s².
+    shear : float
+        The latter alone, m/s².
     ground : float
         Static pressure at the launch, Pa; NaN while it is not known.
     """
@@ -53,13 +54,14 @@ class Air:
         "gust",
         "heat",
         "measured",
+        "shear",
         "temperature",
     )
 
     def __init__(self, aided: AidedSettings, calibration: float, lightness: float = 1.0) -> None:
         self._aided, self._calibration, self._lightness = aided, calibration, lightness
-        self._falls = aided.gust_height > 0.0 and aided.gust_sd > 0.0
-        self.gust = gust_density(aided, 0.0)
+        self._falls = (aided.gust_height > 0.0 and aided.gust_sd > 0.0) or aided.shear > 0.0
+        self.gust, self.shear = gust_density(aided, 0.0), 0.0
         self.ground = self.density = float("nan")
         self.begin(0.0)
 
@@ -73,11 +75,13 @@ class Air:
         self.temperature, self.gas = temperature, GAS_CONSTANT_DRY_AIR * temperature * self._lightness
         self.heat = SEVEN_R * temperature * self._calibration * self._calibration
 
-    def at(self, static: float) -> None:
-        """Take the static pressure of the moment, Pa: the density and, by the height, the gusts follow."""
+    def at(self, static: float, slope: float) -> None:
+        """Take static pressure, Pa, and g sin γ, m/s², of the moment: density and, by the height, gusts follow."""
         self.density = static / self.gas
         if self._falls:
-            self.gust = gust_density(self._aided, (self.ground - static) / (GRAVITY * self.density))
+            height = (self.ground - static) / (GRAVITY * self.density)
+            self.shear = shear_density(self._aided, height, slope)
+            self.gust = gust_density(self._aided, height) + self.shear
 
     def speed(self, total: float, static: float) -> float:
         """Return the airspeed of two pressures, Pa; 0 if the total pressure is not above the static one."""

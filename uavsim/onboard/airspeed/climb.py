@@ -15,8 +15,8 @@ with ν and e what the two models are off by, and S the healthy one's variance f
 are no evidence.
 """
 
-from uavsim.onboard.airspeed.air import GRAVITY
 from uavsim.onboard.airspeed.frozen import LEAST, MOST, SURPRISE
+from uavsim.onboard.airspeed.gust import GRAVITY
 
 # m/s and (m/s)/√s: the climb at the start, and what roll and pitch turn away from f_z. By hand: with a smaller rate a
 # turn would look like a shut port, with a greater one a shut port like a turn

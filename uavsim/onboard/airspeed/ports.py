@@ -14,8 +14,9 @@ tests fires first is chance, so the rules below say which port is flagged:
 
 from collections.abc import Iterable
 
-from uavsim.onboard.airspeed.air import GRAVITY, SLOWEST, Air
+from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
+from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.readmission import longest_row
 from uavsim.onboard.airspeed.settings import AidedSettings
@@ -133,7 +134,7 @@ class Ports:
             if self.static.faulty:
                 return
             air = self._air
-            kind = self.total.take(energy, time, gained, self._lift, tared, nis, air.density, air.gust)
+            kind = self.total.take(energy, time, gained, self._lift, tared, nis, air)
             if kind:
                 self._blame(t, energy, kind)
 

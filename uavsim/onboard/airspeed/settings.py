@@ -23,6 +23,9 @@ class AidedSettings:
         Its scale length, m: the gust's correlation time is that over the airspeed.
     gust_height : float
         Height above the launch at which these hold, m; the gust's density is as 1/height; 0: they hold everywhere.
+    shear : float
+        How fast the mean wind grows with the logarithm of the height, dW/d(ln h), m/s: so much more may the airspeed
+        wander in a climb; 0: not at all.
     slope_rate : float
         How fast the climb's share of gravity, g·sin γ, wanders in flight, (m/s²)/√s.
     slope_time : float
@@ -55,6 +58,7 @@ class AidedSettings:
     gust_floor: Annotated[float, Interval(gt=0.0, le=5.0)] = 0.2
     gust_length: Annotated[float, Interval(gt=1.0, le=5000.0)] = 200.0
     gust_height: Annotated[float, Interval(ge=0.0, le=5000.0)] = 0.0
+    shear: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.0
     slope_rate: Annotated[float, Interval(gt=0.0, le=50.0)] = 0.7
     slope_time: Annotated[float, Interval(gt=0.1, le=1000.0)] = 5.0
     bias_sd: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.3

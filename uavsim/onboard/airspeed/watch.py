@@ -19,10 +19,11 @@ Which of the two ports is to blame where both seem wrong is weighed in `ports`.
 
 from math import exp, inf
 
-from uavsim.onboard.airspeed.air import GRAVITY
+from uavsim.onboard.airspeed.air import Air
 from uavsim.onboard.airspeed.climb import ClimbTest
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
+from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
@@ -124,7 +125,7 @@ class TotalWatch:
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
-        self._wandering = LeakTest(aided.gust_sd, aided.gust_length)
+        self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared, offset_sd)
         self.faulty = self._astray = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
@@ -141,8 +142,7 @@ class TotalWatch:
         lift: float,
         reading: float,
         nis: float,
-        density: float,
-        gust: float,
+        air: Air,
     ) -> str:
         """Take a reading that the filter has taken; return what seems to be wrong, as `PortMonitor.add`.
 
@@ -156,8 +156,7 @@ class TotalWatch:
             Tared, Pa.
         nis : float
             Normalised innovation squared.
-        density, gust : float
-            Of the air, kg/m³, and of its gusts, 2 σ²/L, m/s².
+        air : Air
         """
         port, dt, v = self.port, t - self._t, energy.v
         if dt > GAP:
@@ -167,7 +166,7 @@ class TotalWatch:
             self._near, self._taught = 0, 0.0
             self._wandering.forget()
         test = port.frozen
-        spread = (gust if self._declared else self._still) * v
+        spread = (air.gust if self._declared else self._still + air.shear) * v
         if spread < self._force_density:  # noqa: PLR1730 - a coarse accelerometer hides more of V than still air
             spread = self._force_density
         if t - self._before[-1][0] > PACE:
@@ -177,7 +176,7 @@ class TotalWatch:
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, density * v, spread * dt, turn) == 0.0
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn) == 0.0
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained

@@ -48,6 +48,14 @@ def towards_at(height: float, towards: float, veer: float) -> float:
     return towards + veer * (min(max(height, 0.0), TOP) - REFERENCE)
 
 
+def growth(environment: EnvironmentSettings, height: float) -> float:
+    """How fast the mean wind grows with the logarithm of the height, dW/d(ln h), m/s, at a height above ground, m."""
+    kind, scale, own, _, _ = law(environment)
+    if kind == LOG:
+        return scale
+    return own * scale * (min(height, TOP) / REFERENCE) ** own if kind == POWER else 0.0
+
+
 def mean_wind(environment: EnvironmentSettings, height: float) -> tuple[float, float]:
     """Mean wind, m/s to the north and to the east, at a height above the ground, m."""
     kind, scale, own, towards, veer = law(environment)
