@@ -94,7 +94,7 @@ print(json.dumps([flight.events, flight.score, {name: digest(t) for name, t in f
 
 @pytest.mark.parametrize("scenario", ["catapult", "gusty"])
 def test_the_same_seed_is_the_same_flight_in_another_process(scenario: str) -> None:
-    """Tables, events and score; `gusty` with JSBSim's own random turbulence."""
+    """Tables, events and score; `gusty` with turbulence."""
     other = subprocess.run([sys.executable, "-c", DIGEST, scenario], capture_output=True, text=True, check=True)
     flight = uavsim.fly(short(scenario=scenario))
     digests = {

@@ -30,11 +30,11 @@ def test_air_is_that_of_the_thermometer_and_the_static_pressure():
     assert air.temperature == 288.15
     air.begin(260.0)
     assert air.measured
-    air.at(80_000.0)
+    air.at(80_000.0, 0.0)
     assert air.density == pytest.approx(80_000.0 / (287.05 * 260.0), rel=1e-4)
     assert air.heat == pytest.approx(7.0 * 287.05 * 260.0 * 1.21, rel=1e-4)
     air.warm(300.0)
-    air.at(80_000.0)
+    air.at(80_000.0, 0.0)
     assert air.density == pytest.approx(80_000.0 / (287.05 * 300.0), rel=1e-4)
 
 
@@ -52,7 +52,7 @@ def test_gusts_fall_with_the_height_that_the_pressure_tells():
     air = Air(aided, calibration=1.0)
     air.begin(288.15)
     air.ground = 101_325.0
-    air.at(101_325.0 - 60.0 * 9.80665 * 1.2207)
+    air.at(101_325.0 - 60.0 * 9.80665 * 1.2207, 0.0)
     assert air.gust == pytest.approx(2.0 * 4.0 / 150.0 / 6.0, rel=0.01)
 
 
@@ -159,7 +159,7 @@ class Watch:
 
 def watched(total, static):
     air = Air(AidedSettings(), calibration=1.0)
-    air.at(90_000.0)
+    air.at(90_000.0, 0.0)
     ports = Ports(AidedSettings(), air, NoiseModel(2.0, 3.0, 0.0), 4.0, 9.0)
     ports.total, ports.static = total, static
     ports.seen_total, ports.seen_static = (91_000.0, 1.3), (90_000.0, 4.99, 9.7)

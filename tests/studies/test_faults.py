@@ -5,6 +5,8 @@ from math import inf, nan
 
 import pytest
 
+from uavsim.beliefs import believed_air
+from uavsim.scenario import load_scenario
 from uavsim.studies.faults import CASES, FaultFlight, campaign, fly_case, summarise
 
 SEEN = FaultFlight(
@@ -70,3 +72,13 @@ def test_a_fault_that_is_flown_is_seen() -> None:
 def test_what_is_no_campaign(name: str, flights: int) -> None:
     with pytest.raises(ValueError, match=r"unknown case|not at least 1"):
         campaign(name, flights)
+
+
+@pytest.mark.parametrize("name", [name for name in CASES if name.endswith("gusts") or name == "blocked-for-3-s"])
+def test_gusts_are_of_1_m_s_where_they_are_flown(name: str) -> None:
+    """Their heights and winds are the cases' own: `gusty` was lowered to 40 m, where the same wind has 1.07 m/s."""
+    scenario = load_scenario(CASES[name].scenario, overrides=CASES[name].overrides)
+    air = scenario.environment
+    assert believed_air(scenario).aided.gust_sd == pytest.approx(1.0, abs=0.005)
+    assert air.wind_speed == air.turbulence_wind_20ft
+    assert air.gust_speed == 0.0

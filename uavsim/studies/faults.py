@@ -31,7 +31,12 @@ from uavsim.studies.processes import each
 OFF = 2.0  # m/s, true error from which on a fault has to be seen
 WITHIN = 2.0  # s
 CLIMBS = ("flight_computer.height=300", "flight_computer.climb_pitch_deg=4", "flight_computer.height_gain=0.01")
-GUSTS = ("environment.gust_speed=0", "environment.turbulence_wind_20ft=6.49")  # m/s: σ_u is 1 m/s at 60 m
+GUSTS = (  # a wind whose turbulence has σ_u 1 m/s at 60 m, which is where it is flown
+    "environment.gust_speed=0",
+    "environment.wind_speed=6.49",
+    "environment.turbulence_wind_20ft=6.49",
+    "flight_computer.height=60",
+)
 
 
 @dataclass(frozen=True, slots=True)
