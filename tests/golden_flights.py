@@ -80,7 +80,7 @@ BELIEVED = (
     "mismatch.acceleration=0.9", "mismatch.acceleration_sd=1.3", "mismatch.accelerometer_noise=1.1",
     "mismatch.accelerometer_scale=1.2", "mismatch.accelerometer_lag=1.1", "mismatch.temperature=1.4",
     "mismatch.gust=1.3", "mismatch.accelerometer_offset=1.2",
-    "estimator.wind_sd=4", "estimator.aided.bias_time=4", "estimator.aided.gust_length=170",
+    "estimator.wind_sd=4", "estimator.aided.shear=1.3", "estimator.aided.bias_time=4", "estimator.aided.gust_length=170",
     "estimator.aided.slope_time=4", "estimator.aided.replay=0.25", "estimator.vapour_fraction=0.01",
 )  # fmt: skip
 UNITS = (
