@@ -80,7 +80,7 @@ BELIEVED = (
     "mismatch.acceleration=0.9", "mismatch.acceleration_sd=1.3", "mismatch.accelerometer_noise=1.1",
     "mismatch.accelerometer_scale=1.2", "mismatch.accelerometer_lag=1.1", "mismatch.temperature=1.4",
     "mismatch.gust=1.3", "mismatch.accelerometer_offset=1.2",
-    "estimator.wind_sd=4", "estimator.aided.shear=1.3", "estimator.aided.bias_time=4", "estimator.aided.gust_length=170",
+    "estimator.wind_sd=4", "estimator.aided.bias_time=4", "estimator.aided.gust_length=170",
     "estimator.aided.slope_time=4", "estimator.aided.replay=0.25", "estimator.vapour_fraction=0.01",
 )  # fmt: skip
 UNITS = (
@@ -101,7 +101,7 @@ UNITS = (
     "air_data.static_port.tube.length=0.3", "air_data.static_port.tube.volume=8e-8",
 )  # fmt: skip
 AIDED = (
-    "estimator.fastest=90", "estimator.aided.gust_sd=0.7", "estimator.aided.gust_floor=0.3",
+    "estimator.fastest=90", "estimator.aided.shear=1.3", "estimator.aided.gust_sd=0.7", "estimator.aided.gust_floor=0.3",
     "estimator.aided.gust_height=25", "estimator.aided.slope_rate=0.9", "estimator.aided.bias_sd=0.45",
     "estimator.aided.bias_rate=0.003", "estimator.aided.static_walk=0.4", "estimator.aided.on_rail=25",
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
