@@ -101,7 +101,8 @@ UNITS = (
     "air_data.static_port.tube.length=0.3", "air_data.static_port.tube.volume=8e-8",
 )  # fmt: skip
 AIDED = (
-    "estimator.fastest=90", "estimator.aided.shear=1.3", "estimator.aided.gust_sd=0.7", "estimator.aided.gust_floor=0.3",
+    "estimator.fastest=90", "estimator.aided.shear=1.3", "estimator.aided.gust_sd=0.7",
+    "estimator.aided.gust_floor=0.3",
     "estimator.aided.gust_height=25", "estimator.aided.slope_rate=0.9", "estimator.aided.bias_sd=0.45",
     "estimator.aided.bias_rate=0.003", "estimator.aided.static_walk=0.4", "estimator.aided.on_rail=25",
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",

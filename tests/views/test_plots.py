@@ -456,3 +456,15 @@ def test_the_launch_figure_draws_what_passes_its_limit(kind: str) -> None:
     assert value[last] == y >= limit[last] * (1.0 - 1e-5)
     assert np.all(value[:last] < limit[:last])
     assert np.isnan(value[last + 1 :]).all()
+
+
+def test_an_angle_of_attack_without_air_from_ahead_is_not_drawn() -> None:
+    """On the rail in a crosswind it is anything from −180° to 180°, and would set the scale of the whole flight."""
+    flight = uavsim.fly("crosswind", seed=1, overrides=["duration=7"])
+    waiting = flight.truth["t"] < 3.0
+    assert np.degrees(flight.truth["alpha"][waiting]).abs().max() > 90.0
+    figure = trajectory.draw(Record(flight))
+    assert figure is not None
+    drawn = [line for axes in figure.axes for line in axes.lines if line.get_label() == "angle of attack"]
+    assert drawn
+    assert max(np.nanmax(np.abs(line.get_ydata())) for line in drawn) < 60.0

@@ -34,7 +34,7 @@ ROWS = ((5.7, 2.0), (2.4, 2.0), (0.6, 1.6))  # in, bottom and height of each row
 SUBTITLE = "height above the ground at the launcher over the way along the rail's heading"
 LEAST_SAVED = 1.0  # s that an enlargement must leave out to be worth drawing beside the whole
 LABELS = 6  # lines of them that the gap below the first row holds
-SLOWEST = 3.0  # m/s of true airspeed below which the angle of attack has no meaning
+SLOWEST = 3.0  # m/s of air from ahead below which the angle of attack has no meaning, as in a crosswind on the rail
 EXAGGERATIONS = (1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50, 100)
 SHAPES = {"detected": "x", "rail exit": "s", "wing out": "D", "motor on": "o"}
 
@@ -144,8 +144,9 @@ def _scale(axes: "Axes", distance: Array, height: Array) -> None:
 
 
 def _attitude(axes: "Axes", record: Record, stretch: Stretch) -> None:
-    t, pitch, roll, alpha, airspeed = record.within(stretch, "truth", "pitch", "roll", "alpha", "airspeed")
-    alpha = np.where(airspeed > SLOWEST, alpha, np.nan)
+    names = ("pitch", "roll", "alpha", "beta", "airspeed")
+    t, pitch, roll, alpha, beta, airspeed = record.within(stretch, "truth", *names)
+    alpha = np.where(airspeed * np.cos(beta) * np.cos(alpha) > SLOWEST, alpha, np.nan)
     for name, angle, colour in (("pitch", pitch, BLACK), ("roll", roll, ORANGE), ("angle of attack", alpha, BLUE)):
         axes.plot(*thin(t, np.degrees(angle)), color=colour, linewidth=1.1, label=name)
     axes.axhline(0.0, color=GREY, linewidth=0.6)
