@@ -61,6 +61,11 @@ def catapult_paper_50() -> Batch:
 
 
 @pytest.fixture(scope="session")
+def gusty_without_gust_20() -> Batch:
+    return flown("gusty", 20, "environment.gust_speed=0")
+
+
+@pytest.fixture(scope="session")
 def gusty_20() -> Batch:
     return flown("gusty", 20)
 

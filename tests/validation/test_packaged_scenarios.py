@@ -129,6 +129,13 @@ def test_gusty(gusty_20: Batch, figure: Figure) -> None:
     figure("within 1.96 standard deviations in cruise", runs["airspeed.cruise.coverage_95"])
 
 
+def test_gusty_is_gusty_by_its_turbulence(gusty_without_gust_20: Batch, figure: Figure) -> None:
+    """Without its gust: the airspeed's standard deviation is the process's, not one event's; all reach cruise."""
+    outcomes(gusty_without_gust_20, "cruise")
+    spread = gusty_without_gust_20.runs["flight.cruise_airspeed_sd"]
+    figure("standard deviation of true airspeed in cruise, without the gust", spread, "m/s", 0.5)
+
+
 def test_gusty_does_not_bank_away(figure: Figure) -> None:
     """Bank below 30° from the wings on, in each of ten flights that are looked at whole."""
     banks = []
