@@ -34,7 +34,10 @@ SEEDS = "1-6"
 FILES = {"scenario.toml", "score.json", "events.json", *(f"{name}.parquet" for name in UNITS)}
 GONE = 60.0  # s after which a process is one too many; it takes a tenth of one on an idle machine
 
-TERMINAL = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"  # not so in the background
+TERMINAL = (  # not so in the background, nor under nohup
+    "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    "signal.signal(signal.SIGHUP, signal.SIG_DFL)\n"
+)
 TWO = "import os\nos.cpu_count = lambda: 2\n"  # workers, whatever the machine
 MAIN = "from uavsim import cli\ncli.main()\n"
 FLYING = """
