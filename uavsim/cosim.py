@@ -56,12 +56,12 @@ class Draws:
     """What a calibration of both membranes along body x found of their sensitivity to acceleration, Pa/(m/s²)."""
 
 
-def draw(scenario: Scenario, index: int = 0) -> Draws:
-    """Draw the launch of flight `index` of the campaign `scenario.seed`.
+def draw(scenario: Scenario, index: int | None = None) -> Draws:
+    """Draw the launch of flight `index`, or the scenario's own, of the campaign `scenario.seed`.
 
     The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch.
     """
-    streams = Streams(scenario.seed, index)
+    streams = Streams(scenario.seed, scenario.index if index is None else index)
     launcher = scenario.launcher
     wait = streams("launcher.wait").uniform(launcher.wait_min, launcher.wait_max)
     spread = launcher.force_spread
@@ -176,17 +176,15 @@ class Cosimulation:
     ----------
     scenario
         What to fly.
-    index
-        Number of the flight in the campaign of the scenario's seed.
     plant
         Instead of the scenario's own; for tests.
     """
 
-    def __init__(self, scenario: Scenario, index: int = 0, plant: Plant | None = None) -> None:
+    def __init__(self, scenario: Scenario, plant: Plant | None = None) -> None:
         self.scenario = scenario
-        self.draws = draw(scenario, index)
+        self.draws = draw(scenario)
         self.plant = make_plant(scenario, self.draws) if plant is None else plant
-        streams = Streams(scenario.seed, index)
+        streams = Streams(scenario.seed, scenario.index)
         release = self.draws.release_time
         self.dt = dt = 1.0 / scenario.plant.step_rate
         push = scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor

@@ -140,6 +140,8 @@ class Scenario:
         Of the record, s; longer than the wait on the rail, which is part of it.
     seed
         Of everything that is drawn.
+    index
+        Number of the flight under this seed: each draws its own.
     expect
         The outcome that counts as success.
     requirements
@@ -152,6 +154,7 @@ class Scenario:
     description: str = ""
     duration: Annotated[float, Interval(ge=1, le=3600)] = 35.0
     seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 1
+    index: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 0
     expect: Outcome = "cruise"
     plant: PlantSettings = field(default_factory=PlantSettings)
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)
