@@ -429,7 +429,7 @@ def _outcomes(flown: Batch) -> "Figure":
     expected = flown.scenario.expect
     drawn = {column for key, _, _ in strips for _, column, _ in _samples(flown, key)}
     words = f"expected: {expected}; a point is a flight; cross: median and its 95 % band"
-    if drawn & {r.key for r in flown.scenario.requirements}:
+    if drawn & {r.key for r in flown.scenario.requirements if r.of_each_flight}:
         words += "; red: the scenario's bounds"
     figure, axes = sheet(
         _title(flown), words, (1.0,), (0.8, 1.2, 1.2), size=(11.5, 4.6), right=0.3, share=False, gap=(0.1, 0.32)
@@ -455,7 +455,7 @@ def _outcomes(flown: Batch) -> "Figure":
 
 def _strips(axes: "Axes", flown: Batch, key: str) -> None:
     """Draw a column of points for all phases together and one for each."""
-    bounds = {r.key: (r.minimum, r.maximum) for r in flown.scenario.requirements}
+    bounds = {r.key: (r.minimum, r.maximum) for r in flown.scenario.requirements if r.of_each_flight}
     for i, (name, column, sample) in enumerate(_samples(flown, key)):
         colour = PHASES.get(name, GREY)
         x = i + 0.5 * (np.arange(sample.size) * GOLDEN % 1.0 - 0.5)
