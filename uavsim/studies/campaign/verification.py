@@ -52,7 +52,8 @@ EVERY_SHARE = 0.95  # of all flights, which flights without a failure must show
 EVIDENCE = (0.5, 0.2, 0.1, 0.05, 0.01, 1e-3, 1e-4, 1e-6)  # levels that are tried besides Holm's
 MEAN_EVIDENCE = (0.2, 0.05, 0.01)  # of means, whose looks spend a share of each
 FIRST, GROWTH = 8, 1.1  # first look, and how much later each next one is
-LOOKS_FOR_FEW = 6  # n_0 … n_5 of `few`, which lie far apart where events are rare; further on the grid is as fine
+RARE, LOOKS_FOR_FEW = 0.02, 3  # n_0, n_1, n_2 of `few` are looks of their own where the event may not be more frequent
+LEAST_GAP, CLOSE = 4, 0.05  # between looks, flights and share of them
 FURTHEST, MOST_EVENTS = 1_000_000, 1024.0  # flights, and expected events, to which is planned ahead
 MOST_SURPLUS = 64.0  # the same for more events than are allowed
 HOUR = 3600.0  # s
@@ -216,17 +217,22 @@ def holm(p_values: Sequence[float], error: float) -> list[bool]:
 def schedule(requirements: Sequence[Requirement], confidence: float, budget: int) -> tuple[int, ...]:
     """Numbers of flights at which to look, the budget last.
 
-    The error is kept at any; these are where `met` may come, and often enough for `not met`.
+    The error is kept at any; these are where `met` may come, and often enough for `not met`. Looks that lie within a
+    twentieth of the one before are left out, unless `met` may come there of what is rare.
     """
-    looks = {budget, *sequential.mean_looks(budget)}
-    at = float(FIRST)
+    error = 1.0 - confidence
+    levels = {error, error / len(requirements)}
+    wanted = {n for one in requirements for level in levels for n in _may_be_met(one, level, budget)}
+    looks, at = {*sequential.mean_looks(budget)}, float(FIRST)
     while at < budget:
         looks.add(round(at))
         at = max(at + 1.0, at * GROWTH)
-    error = 1.0 - confidence
-    for one in requirements:
-        looks.update(n for level in {error, error / len(requirements)} for n in _may_be_met(one, level, budget))
-    return tuple(sorted(n for n in looks if 0 < n <= budget))
+    kept: list[int] = []
+    for n in sorted(looks | wanted):
+        near = bool(kept) and n - kept[-1] < max(LEAST_GAP, CLOSE * n)
+        if FIRST <= n < budget and not (near and n not in wanted):
+            kept.append(n)
+    return (*kept, budget)
 
 
 def outlook(
@@ -573,7 +579,8 @@ def _may_be_met(requirement: Requirement, level: float, budget: int) -> list[int
     event = _empty(requirement)
     if event.bound > 0.5:
         event = event.complement()
-    return [int(n) for n in sequential.few_times(Flights(event.bound), level, float(budget))[:LOOKS_FOR_FEW]]
+    few = sequential.few_times(Flights(event.bound), level, float(budget))
+    return [int(n) for n in few[: LOOKS_FOR_FEW if event.bound <= RARE else 1]]
 
 
 def _empty(requirement: Requirement) -> _Events:
