@@ -12,13 +12,15 @@ write control characters.
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from xml.etree import ElementTree as xml  # written, never read
+from xml.etree.ElementTree import Element, SubElement, indent, tostring  # written, never read
 
 import numpy as np
 
 from uavsim.files import write_bytes, write_json
 from uavsim.requirements import Requirement
-from uavsim.studies.campaign.verification import Course, Judgement, Outlook, Verification, course, plain
+from uavsim.studies.campaign.evidence import Course, course
+from uavsim.studies.campaign.outlook import Outlook
+from uavsim.studies.campaign.verification import Judgement, Verification, plain
 from uavsim.studies.campaign.verify import Verified
 from uavsim.views.figure import BLUE, DARK, GREEN, GREY, RED, SMALL, label, literal, save, sheet
 from uavsim.views.terminal import _console, _print, _table, words
@@ -172,23 +174,23 @@ def junit(seen: Verification, scenario: "Scenario", seconds: float = 0.0) -> byt
         "skipped": 0,
     }
     told = {key: str(value) for key, value in counts.items()}
-    root = xml.Element("testsuites")
-    suite = xml.SubElement(root, "testsuite", name=f"uavsim verify {name}", time=f"{seconds:.3f}", **told)
-    properties = xml.SubElement(suite, "properties")
+    root = Element("testsuites")
+    suite = SubElement(root, "testsuite", {"name": f"uavsim verify {name}", "time": f"{seconds:.3f}", **told})
+    properties = SubElement(suite, "properties")
     facts = {"runs": seen.runs, "confidence": seen.confidence, "seed": scenario.seed, "verdict": seen.verdict}
     for key, value in facts.items():
-        xml.SubElement(properties, "property", name=key, value=str(value))
+        SubElement(properties, "property", name=key, value=str(value))
     for one in seen.judgements:
         text = visible(str(one.requirement))
-        case = xml.SubElement(suite, "testcase", classname=f"uavsim.{name}", name=text, time="0.000")
+        case = SubElement(suite, "testcase", classname=f"uavsim.{name}", name=text, time="0.000")
         said = f"{text}: found {_figure(one.estimate)}, bounds {_bounds(one)} after {_flights(seen.runs)}"
         if one.verdict == "not met":
-            xml.SubElement(case, "failure", type="not met", message=said).text = said
+            SubElement(case, "failure", type="not met", message=said).text = said
         elif one.verdict == "undecided":
             said = f"undecided: {said}; {visible(_plan(one))}"
-            xml.SubElement(case, "error", type="undecided", message=said).text = said
-    xml.indent(root)
-    content: bytes = xml.tostring(root, encoding="utf-8", xml_declaration=True)
+            SubElement(case, "error", type="undecided", message=said).text = said
+    indent(root)
+    content: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
     return content
 
 

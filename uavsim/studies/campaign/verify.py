@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING
 from uavsim.requirements import OUTCOME, Requirement
 from uavsim.scenario import Scenario, load_scenario
 from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan
+from uavsim.studies.campaign.evidence import HOUR
 from uavsim.studies.campaign.keep import Keep, keep_of
+from uavsim.studies.campaign.outlook import Outlook, outlook
 from uavsim.studies.campaign.plan import Plan, Random
 from uavsim.studies.campaign.record import Record, frame
-from uavsim.studies.campaign.verification import HOUR, Outlook, Verification, judge, outlook, schedule
+from uavsim.studies.campaign.verification import Verification, judge, schedule
 from uavsim.studies.engine import Crew, Left, engine
 
 if TYPE_CHECKING:
