@@ -179,7 +179,9 @@ FLIGHTS: dict[str, Wanted] = {
         *NOT_TWICE, "duration=7", 'estimator.kind="paper"', 'estimator.model="bernoulli"', "estimator.gain_total=0.6",
         "estimator.gain_static=0.4", "launcher.peak_specific_force_g=12",
     )),
-    "constant-velocity": ("rough-rail", 21, (*NOT_TWICE, "index=3", "duration=6", 'estimator.kind="constant-velocity"')),
+    "constant-velocity": ("rough-rail", 21, (
+        *NOT_TWICE, "index=3", "duration=6", 'estimator.kind="constant-velocity"',
+    )),
     "opens-on-the-rail": ("catapult", 26, (
         "launcher.wait_min=2.8", "launcher.wait_max=2.9", "duration=5",
         'accelerometer.faults=[{kind="offset",start=1.2,stop=1.45,size=95,axis="x"},{kind="dropout",start=3.3,stop=4}]',

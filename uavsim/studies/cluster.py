@@ -145,8 +145,9 @@ def _cluster(workers: int, *, dashboard: bool) -> "LocalCluster":
 
 
 def _alive(cluster: "LocalCluster") -> int:
-    """How many can be given work: not those that have died and are not yet there again, so that none is blamed twice."""
-    return max(1, len(cluster.scheduler.workers))
+    """How many can be given work; not those that have died and are not there again, so that none is blamed twice."""
+    scheduler: Any = cluster.scheduler
+    return max(1, len(scheduler.workers))
 
 
 def _quiet() -> Any:
