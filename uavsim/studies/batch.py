@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.cosim import draw, fly
+from uavsim.cosim import draw, flown
 from uavsim.flight import Flight
 from uavsim.interrupts import Interrupts
 from uavsim.onboard.airspeed.kinds import is_aided
@@ -137,6 +137,7 @@ def fly_seeds(
     """
     import pandas as pd
 
+    scenario = scenario.checked()  # once for all flights
     started = time.monotonic()
     done: dict[int, Result] = {}
     lost: list[int] = []
@@ -190,9 +191,9 @@ def _one_of(scenario: Scenario, which: tuple[int, int]) -> Result:
 
 
 def _one(scenario: Scenario, seed: int, *, position: int) -> Result:
-    """Fly one seed; the whole flight comes back only if somebody will look at it."""
+    """Fly one seed of a scenario that was checked; the whole flight comes back only if somebody will look at it."""
     own = scenario.with_seed(seed)
-    flight = fly(own)
+    flight = flown(own)
     draws = draw(own)
     row = {
         "index": 0,
