@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from uavsim.flight import Flight
 
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
+Drawn = Annotated[int, Interval(ge=0, le=2**63 - 1)]
 Outcome = Literal[
     "cruise", "missed_launch", "false_launch", "crashed", "landed", "diverged", "onboard_failed", "timeout",
     "completed",
@@ -153,8 +154,8 @@ class Scenario:
     name: str = "scenario"
     description: str = ""
     duration: Annotated[float, Interval(ge=1, le=3600)] = 35.0
-    seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 1
-    index: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 0
+    seed: Drawn = 1
+    index: Drawn = 0
     expect: Outcome = "cruise"
     plant: PlantSettings = field(default_factory=PlantSettings)
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)
@@ -196,8 +197,32 @@ class Scenario:
         return "+x" if self.plant.chosen.flies or isinstance(axes, str) or len(axes) != 1 else axes[0]
 
     def with_seed(self, seed: int) -> "Scenario":
-        """The same scenario with other draws."""
-        return Scenario.from_dict({**self.to_dict(), "seed": seed})
+        """The same scenario with other draws; only the seed is checked, a flight of many costs no more than that.
+
+        Raises
+        ------
+        ValueError
+            One line: what a seed may be.
+        """
+        try:
+            return replace(self, seed=settings.read(_Seed, {"seed": seed}).seed)
+        except SettingError as error:
+            raise ValueError(f"scenario: {error.problem}") from None
+
+    def checked(self) -> "Scenario":
+        """The same, checked like one that was read: one that was made in Python, or by `replace`, was not.
+
+        Raises
+        ------
+        ValueError
+            As `from_dict`.
+        """
+        return Scenario.from_dict(self.to_dict())
+
+
+@dataclass(frozen=True, slots=True)
+class _Seed:
+    seed: Drawn
 
 
 def scenario_of(flight: "Flight") -> Scenario:
@@ -436,10 +461,11 @@ def with_kinds(s: Scenario, **chosen: Any) -> Scenario:
     ValueError
         One line: it is not registered, no such class, or does not suit the scenario.
     """
+    chosen = {what: named for what, named in chosen.items() if named is not None}
+    if not chosen:
+        return s
     values = s.to_dict()
     for what, named in chosen.items():
-        if named is None:
-            continue
         name = named if isinstance(named, str) else of_class(what, named)
         own = values[what] if name == values[what]["kind"] else {}
         kept = {"axes": values[what]["axes"]} if what == "detector" else {}

@@ -23,6 +23,7 @@ from math import atan2, cos, exp, inf, isfinite, pi, sin, sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+from weakref import proxy
 
 import numpy as np
 from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
@@ -314,7 +315,7 @@ class JsbsimPlant:
 
     def _settle(self) -> None:
         if self._moving.active:
-            self._blown = self._moving.motion(-self._settling * self.dt, self._state)
+            self._blown = self._motion_from(-self._settling * self.dt)
         loads, counted = 0.0, round(SETTLED * self.settings.step_rate)
         for k in range(-self._settling, 0):
             forces = self._hold(k * self.dt)
@@ -404,7 +405,7 @@ class JsbsimPlant:
         if moving.gusts.awaited and self.row[WING] >= WING_OUT:
             moving.tell("wing-out", self.t)
         if moving.active and self._blown is None:
-            self._blown = moving.motion(self.t, self._state)
+            self._blown = self._motion_from(self.t)
         self._attended = self.on_rail or self._left is not None or bool(moving.gusts.awaited)
 
     def _blow(self, blown: Iterator[tuple[float, ...]]) -> None:
@@ -421,6 +422,11 @@ class JsbsimPlant:
         turn_p(p)
         turn_q(q)
         turn_r(r)
+
+    def _motion_from(self, time: float) -> Iterator[tuple[float, ...]]:
+        """Let the air move from `time` on; it does not hold the aircraft, which goes with its last user."""
+        aircraft = proxy(self)
+        return self._moving.motion(time, lambda: aircraft._state())  # noqa: PLW0108 (a bound method would hold it)
 
     def _state(self) -> AirState:
         """What the air is told of the aircraft."""
@@ -453,8 +459,9 @@ class JsbsimPlant:
         north0, east0, altitude0, *_ = MOTION(self._datum)
         fx, fy, fz, mass, _, _, _, p, q, r, p_dot, q_dot, r_dot = row[FELT]
         x, y, z = body_axes(ATTITUDE(row))
-        pull = self._gravity / FT
-        an, ae, ad = ((fx * x[i] + fy * y[i] + fz * z[i]) / mass + (pull if i == 2 else 0.0) for i in range(3))
+        an = (fx * x[0] + fy * y[0] + fz * z[0]) / mass
+        ae = (fx * x[1] + fy * y[1] + fz * z[1]) / mass
+        ad = (fx * x[2] + fy * y[2] + fz * z[2]) / mass + self._gravity / FT
         half = 0.5 * ahead
         return Motion(
             (
@@ -589,7 +596,7 @@ class JsbsimPlant:
 
     def truth(self) -> dict[str, Array]:
         """Columns of the truth (`uavsim.truth.UNITS`), SI, one value a step."""
-        table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(RAW) + len(OWN))
+        table = np.frombuffer(memoryview(self._buffer).toreadonly(), count=self._size // 8).reshape(-1, ROW.size // 8)
         raw = {name: table[:, i] * factor for i, (name, (_, factor)) in enumerate(RAW.items())}
         raw["t"] = np.arange(len(table)) / self.settings.step_rate
         raw |= {name: table[:, len(RAW) + i] for i, name in enumerate(OWN)}
