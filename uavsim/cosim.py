@@ -59,7 +59,8 @@ class Draws:
 def draw(scenario: Scenario, index: int | None = None) -> Draws:
     """Draw the launch of flight `index`, or the scenario's own, of the campaign `scenario.seed`.
 
-    The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch.
+    The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch. The
+    force factor is that of the specific force: the catapult is set for an aircraft of the mass that it should have.
     """
     streams = Streams(scenario.seed, scenario.index if index is None else index)
     launcher = scenario.launcher
@@ -67,7 +68,7 @@ def draw(scenario: Scenario, index: int | None = None) -> Draws:
     spread = launcher.force_spread
     return Draws(
         release_time=round(wait * STEP_RATES[0]) / STEP_RATES[0],
-        force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)),
+        force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)) * scenario.push_factor,
         plant_seed=streams.integer("plant"),
         calibration=calibrated(scenario, streams),
     )

@@ -195,6 +195,12 @@ class Scenario:
         axes = self.detector.axes
         return "+x" if self.plant.chosen.flies or isinstance(axes, str) or len(axes) != 1 else axes[0]
 
+    @property
+    def push_factor(self) -> float:
+        """What the push gives, over the specific force that the catapult is set for; it knows no aircraft's mass."""
+        factor = self.launcher.force_factor
+        return factor / self.aircraft.mass_factor if self.plant.chosen.flies else factor
+
     def with_seed(self, seed: int) -> "Scenario":
         """The same scenario with other draws."""
         return Scenario.from_dict({**self.to_dict(), "seed": seed})
@@ -617,7 +623,7 @@ def _check_detector(s: Scenario) -> None:
         raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind.name}'", "detector.axes")
     if kind.need is None:
         return
-    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
+    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread) * s.push_factor
     need = kind.need(s.detector, push)
     if need.level_key == "trigger" and need.level < s.detector.threshold:
         raise SettingError(
