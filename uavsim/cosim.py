@@ -20,6 +20,7 @@ from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
 from uavsim.beliefs import believed_air, believed_noise, calibrated
+from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
@@ -176,13 +177,13 @@ class Cosimulation:
     Parameters
     ----------
     scenario
-        What to fly.
+        What to fly; its dispersions are drawn (`uavsim.dispersions`).
     plant
         Instead of the scenario's own; for tests.
     """
 
     def __init__(self, scenario: Scenario, plant: Plant | None = None) -> None:
-        self.scenario = scenario
+        self.scenario = scenario = resolved(scenario, scenario.index)
         self.draws = draw(scenario)
         self.plant = make_plant(scenario, self.draws) if plant is None else plant
         streams = Streams(scenario.seed, scenario.index)

@@ -3,7 +3,8 @@
     factor/lift, factor/drag, factor/pitch, factor/thrust     multiply that force or moment
     ballast/fore-pointmass, ballast/aft-pointmass             numbers of two point masses, which the simulation places
 
-The simulation sets them before a flight (`uavsim.plants.varied`). At 1 and at no ballast a flight is the same bit by bit.
+The simulation sets them before a flight (`uavsim.plants.varied`). With factors of 1 and no ballast they change no
+bit of a flight.
 """
 
 FORE, AFT = 4, 5  # behind the panels' four

@@ -12,8 +12,8 @@ the fuselage's side with that in the plane of the wing. Every rate is the body's
              C_L · K,  K = (1 + s)/(1 + s φ)     lifting line whose induced angle is φ of the free one; s = a₀/(π A)
              ε · g_ε,  g_ε = 1/(1 + (b/4h)²)     images of the trailing vortices, wing and tail level (DATCOM §4.7)
 
-Lift and drag, the whole force along their axes, and the pitching moment are multiplied with factor/lift, factor/drag and
-factor/pitch, 1 unless a scenario says otherwise: what is not known of an aircraft's aerodynamics.
+Lift and drag, the whole force along their axes, and the pitching moment are multiplied with factor/lift, factor/drag
+and factor/pitch, 1 unless a scenario says otherwise: what is not known of an aircraft's aerodynamics.
 
 A function before the axes is worked out once a step, in this order; the pressures of the planes are of this step there.
 """

@@ -22,7 +22,7 @@ def metrics_xml(geometry: Geometry) -> str:
 
 
 def mass_xml(geometry: Geometry) -> str:
-    """Write what stays as the empty aircraft, and the point masses: 0, 1 right and 2, 3 left panels, folded; ballast."""
+    """Write what stays as the empty aircraft, and point masses: 0, 1 right and 2, 3 left panels, folded; ballast."""
     body = fixed_body(geometry)
     # x and z both change sign from structural to body axes, so Σ m x z stays; "negated" wants it as in the tensor
     inertia = {"ixx": body.ixx, "iyy": body.iyy, "izz": body.izz, "ixz": -body.ixz}
@@ -57,8 +57,8 @@ def reactions_xml(geometry: Geometry) -> str:
     """Write what the launcher and the opening wing do to the aircraft.
 
     Positive: push forwards, shoes lift the aircraft or push it right, the rail's moment rolls it right. The wing's
-    moment has magnitude 1 and the components l, m, n, which systems/wing.xml sets. The excess thrust is what factor/thrust
-    adds to the propeller's, at its place and along the body's axis as that is.
+    moment has magnitude 1 and the components l, m, n, which systems/wing.xml sets. The excess thrust is what
+    factor/thrust adds to the propeller's, at its place and along the body's axis as that is.
     """
     forces = [("push", "push", (1, 0, 0))]
     for shoe in ("front", "rear"):

@@ -22,12 +22,14 @@ class AircraftSettings:
         JSBSim properties of the aircraft that are written once before the flight, in JSBSim's own units; not those of
         the air, the place, the motion or the simulator.
     mass_factor
-        Factor on the mass and on the moments of inertia about y and z. The catapult is set for the aircraft as it should
-        be: its force stays, and a heavier aircraft is accelerated less.
+        Factor on the mass and on the moments of inertia about y and z. The catapult is set for the aircraft as it
+        should be: its force stays, and a heavier aircraft is accelerated less.
     cg_shift
         How far ahead of its place the centre of gravity is, m.
-    lift_factor, drag_factor
-        Factor on the whole aerodynamic force across the flow, up, and along it.
+    lift_factor
+        Factor on the whole aerodynamic force across the flow, in the plane of symmetry.
+    drag_factor
+        Factor on the whole aerodynamic force along the flow.
     pitch_factor
         Factor on the aerodynamic pitching moment about the reference point, that of the tail included.
     thrust_factor

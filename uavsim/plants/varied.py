@@ -6,8 +6,8 @@ Mass and centre of gravity come from two point masses of the aircraft, ballast o
     W_fore + W_aft = (f - 1) W          f: factor on the mass, W: weight without ballast
     (W_fore - W_aft) k = f W Δx         Δx: shift of the centre of gravity, forward; k = √(I_yy/m)
 
-They lie k ahead of and behind the centre of gravity without them, so that the moments of inertia about y and z grow with
-the mass (I_yy by exactly f, less m f Δx²) and that about x stays.
+They lie k ahead of and behind the centre of gravity without them, so that the moments of inertia about y and z grow
+with the mass (I_yy by exactly f, less f m Δx²) and that about x stays.
 """
 
 from dataclasses import dataclass
@@ -63,6 +63,6 @@ def ballast(aircraft: AircraftSettings, mass: float, pitch_inertia: float) -> Ba
 def missing(aircraft: AircraftSettings, name: str, value: float, needed: str) -> str:
     """Say in one line which property an aircraft lacks for a setting."""
     return (
-        f"aircraft.{name} = {value:g}: {aircraft.model!r} lacks the property {needed!r}; an aircraft can only be varied "
-        "if it has that (docs/dispersions.md)"
+        f"aircraft.{name} = {value:g}: {aircraft.model!r} lacks the property {needed!r}, by which it would be "
+        "varied (docs/dispersions.md)"
     )
