@@ -148,10 +148,8 @@ def mean_interval(
         raise ValueError(f"{lost} of {results.size} results are no number; a design's mean needs all of them")
     _, which, counts = np.unique(labels, return_inverse=True, return_counts=True)
     if counts.size < REPLICATES or counts.min() != counts.max():
-        raise ValueError(
-            f"the interval needs at least {REPLICATES} whole replicates; there are {counts.size} of {counts.min()} to "
-            f"{counts.max()} results"
-        )
+        has = f"{counts.size} of {counts.min()} to {counts.max()} results" if counts.size else "0"
+        raise ValueError(f"the interval needs at least {REPLICATES} whole replicates; there are {has}")
     means = np.bincount(which, weights=results) / counts
     mean = float(means.mean())
     half = float(stdtrit(counts.size - 1, 0.5 + 0.5 * confidence)) * float(means.std(ddof=1)) / counts.size**0.5
