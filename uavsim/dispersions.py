@@ -97,7 +97,7 @@ def resolved(scenario: Scenario, index: int, point: "Point | None" = None) -> Sc
 
 def _distribution(scenario: Scenario, name: str, i: int) -> Distribution:
     key = find(scenario, name)
-    return distribution(scenario.dispersions[i], key.own(scenario), whole=key.number is int)
+    return distribution(scenario.dispersions[i], key.own(scenario), key.number)
 
 
 def _random(found: Mapping[str, Distribution], streams: Streams) -> dict[str, float]:

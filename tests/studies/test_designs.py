@@ -70,7 +70,7 @@ def test_a_design_of_nothing_or_too_much_is_refused(dimension: int) -> None:
 
 @pytest.mark.parametrize(("sampling", "repeated"), [(LATIN, 400), (SOBOL, 200)])
 def test_the_interval_covers_the_mean_and_is_narrower_than_that_of_random_points(sampling: str, repeated: int) -> None:
-    """95 % nominal, 400 (200) repetitions: within 3.4 standard errors, 3.7 % (5.2 %), which chance leaves 1 in 1500 times.
+    """95 % nominal, 400 (200) repetitions: within 3.4 standard errors, 3.7 % (5.2 %); by chance not once in 1500 times.
 
     Random points of the same number have 2·1.96 sd/√runs; a design's width is below a half of that here.
     """

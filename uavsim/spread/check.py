@@ -137,7 +137,7 @@ def _distribution(key: Key, one: Dispersion, own: Any, where: str) -> Distributi
         raise SettingError(f"{where}: {has}, so give {'it one' if one.relative else 'mean'}", WHERE)
     if one.relative and own == 0:
         raise SettingError(f"{where}: is 0, and no factor changes that; give its parameters without relative", WHERE)
-    drawn = distribution(one, own, whole=key.number is int)
+    drawn = distribution(one, own, key.number)
     if one.distribution == "truncated-normal" and drawn.left < LEAST_SHARE:
         raise SettingError(
             f"{where}: only {drawn.left:.1g} of the normal distribution lies from low to high; at least "
@@ -182,7 +182,7 @@ def _check_values(scenario: Any, found: dict[str, tuple[Key, Distribution]], tri
     try:
         central = tried(scenario, medians)
     except SettingError as error:
-        raise SettingError(f"{WHERE}, each at its median: {error.problem}", WHERE, *error.keys) from None
+        raise SettingError(f"{WHERE}, each at its median or first value: {error.problem}", WHERE, *error.keys) from None
     values = [(name, value) for name, (_, drawn) in found.items() for value in drawn.tried if value != medians[name]]
     for name, value in values[:MOST_TRIED]:
         where = f"{WHERE} ({name}), value {shown(value)}"

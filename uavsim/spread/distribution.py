@@ -24,6 +24,11 @@ def normal_below(z: float) -> float:
     return 0.5 * erfc(-z / sqrt(2.0))
 
 
+def normal_between(a: float, b: float) -> float:
+    """Probability of a standard normal value from a to b; in the upper tail 1 - Φ has the digits that Φ has lost."""
+    return normal_below(b) - normal_below(a) if a <= 0.0 else normal_below(-a) - normal_below(-b)
+
+
 @dataclass(frozen=True, slots=True)
 class Distribution:
     """Of one value.
@@ -58,7 +63,9 @@ class Distribution:
 
     @property
     def median(self) -> Chosen:
-        """The value in the middle."""
+        """The value in the middle; of a choice the first."""
+        if self.kind == "choice":
+            return self.tried[0]
         return self.of_normal(0.0) if self.is_normal else self.of_uniform(0.5)
 
     @property
@@ -92,7 +99,7 @@ class Distribution:
         from scipy.special import ndtri
 
         a, b = self._ends
-        mirrored = a > 0.0  # in the upper tail 1 - Φ has the digits that Φ has lost
+        mirrored = a > 0.0  # as of `normal_between`
         if mirrored:
             a, b, u = -b, -a, 1.0 - u
         below, above = normal_below(a), normal_below(b)
@@ -106,8 +113,7 @@ class Distribution:
     @property
     def left(self) -> float:
         """Share of the normal distribution that is left when it is truncated."""
-        a, b = self._ends
-        return normal_below(b) - normal_below(a) if a <= 0.0 else normal_below(-a) - normal_below(-b)
+        return normal_between(*self._ends)
 
     def below(self, bound: float) -> float:
         """Probability of a value below a bound."""
@@ -119,7 +125,7 @@ class Distribution:
         z = (bound - self.mean) / self.sd
         if self.kind == "normal":
             return normal_below(z)
-        return 0.0 if bound <= self.low else min((normal_below(z) - normal_below(self._ends[0])) / self.left, 1.0)
+        return 0.0 if bound <= self.low else min(normal_between(self._ends[0], z) / self.left, 1.0)
 
     def above(self, bound: float) -> float:
         """Probability of a value above a bound."""
@@ -129,7 +135,7 @@ class Distribution:
         return mirrored.below(-bound)
 
 
-def distribution(given: Dispersion, own: object, *, whole: bool = False) -> Distribution:
+def distribution(given: Dispersion, own: object, number: type | None) -> Distribution:
     """Return the distribution of a dispersion that was checked.
 
     Parameters
@@ -138,8 +144,8 @@ def distribution(given: Dispersion, own: object, *, whole: bool = False) -> Dist
         The dispersion.
     own
         The key's own value.
-    whole
-        Whether the key takes whole numbers.
+    number
+        What the key takes: float, int, or None if no number.
     """
     scale = float(own) if given.relative else 1.0  # type: ignore[arg-type]  # checked: a number
     ends = (
@@ -151,7 +157,8 @@ def distribution(given: Dispersion, own: object, *, whole: bool = False) -> Dist
         mean = given.mean * scale
     elif given.distribution in NORMALS:
         mean = float(own)  # type: ignore[arg-type]  # likewise
-    values = tuple(float(v) * scale for v in given.values) if given.relative else given.values
+    numbers = number is float and all(isinstance(v, int | float) for v in given.values)
+    values = tuple(float(v) * scale for v in given.values) if numbers else given.values
     return Distribution(
         given.distribution,
         mean,
@@ -160,5 +167,5 @@ def distribution(given: Dispersion, own: object, *, whole: bool = False) -> Dist
         max(ends),
         values,
         given.weights or (1.0,) * len(values),
-        whole,
+        whole=number is int,
     )

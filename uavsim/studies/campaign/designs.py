@@ -6,7 +6,7 @@ coordinates. The points of one design are not independent, so nothing can be sai
 design here is `REPLICATES` or more of them, each scrambled by itself (`Streams(seed, replicate)`), and the interval of
 a mean is Student's over the replicates' means.
 
-    runs = R n:  R = 10 replicates of n points each for the Latin hypercube,  R = 10 … 19 of n = 2^m for Sobol's sequence
+    runs = R n:  R = 10 replicates of n points for the Latin hypercube,  R = 10 … 19 of n = 2^m for Sobol's sequence
 
 Quantiles and probabilities of a requirement are for independent flights: verification takes random ones.
 
