@@ -24,6 +24,7 @@ from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
 from uavsim.beliefs import believed_air, believed_noise, calibrated
+from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
@@ -64,7 +65,8 @@ class Draws:
 def draw(scenario: Scenario, index: int | None = None) -> Draws:
     """Draw the launch of flight `index`, or the scenario's own, of the campaign `scenario.seed`.
 
-    The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch.
+    The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch. The
+    force factor is that of the specific force: the catapult is set for an aircraft of the mass that it should have.
     """
     streams = Streams(scenario.seed, scenario.index if index is None else index)
     launcher = scenario.launcher
@@ -72,7 +74,7 @@ def draw(scenario: Scenario, index: int | None = None) -> Draws:
     spread = launcher.force_spread
     return Draws(
         release_time=round(wait * STEP_RATES[0]) / STEP_RATES[0],
-        force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)),
+        force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)) * scenario.push_factor,
         plant_seed=streams.integer("plant"),
         calibration=calibrated(scenario, streams),
     )
@@ -180,13 +182,13 @@ class Cosimulation:
     Parameters
     ----------
     scenario
-        What to fly.
+        What to fly; its dispersions are drawn (`uavsim.dispersions`).
     plant
         Instead of the scenario's own; for tests.
     """
 
     def __init__(self, scenario: Scenario, plant: Plant | None = None) -> None:
-        self.scenario = scenario
+        self.scenario = scenario = resolved(scenario, scenario.index)
         self.draws = draw(scenario)
         self.plant = make_plant(scenario, self.draws) if plant is None else plant
         streams = Streams(scenario.seed, scenario.index)

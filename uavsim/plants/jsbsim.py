@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MOLAR_MASS_DRY_AIR, MOLAR_MASS_WATER
-from uavsim.plants import held
+from uavsim.plants import held, varied
 from uavsim.plants.air.moving import MovingAir
 from uavsim.plants.air.moving import State as AirState
 from uavsim.plants.air.weather import at_ground, doubts
@@ -234,6 +234,17 @@ class JsbsimPlant:
         self._set("ic/theta-deg", launcher.elevation_deg)
         self._set("atmosphere/delta-T", air.temperature_offset / RANKINE)
         self._apply(s.aircraft.properties)
+        for name, factor in varied.factors(s.aircraft).items():
+            self._set(self._varies(varied.FACTORS[name], name), factor)
+        self._start()
+        if varied.is_ballasted(s.aircraft):
+            self._ballast()
+            self._start()
+        self._check_body()
+        self._weather()
+
+    def _start(self) -> None:
+        """Let JSBSim take in its initial conditions."""
         try:
             started = self._fdm.run_ic()
         except (BaseError, RuntimeError) as error:
@@ -241,8 +252,31 @@ class JsbsimPlant:
             raise ValueError(f"aircraft.model: {_said(error, self.settings.aircraft.model)}") from error
         if not started:
             raise ValueError("aircraft.model: JSBSim cannot start it from rest on the rail")
+
+    def _varies(self, needed: str, *names: str) -> str:
+        """Return a property that settings of the aircraft need; say which of them, where it lacks."""
+        aircraft = self.settings.aircraft
+        if "W" not in self._catalogue.get(needed, ""):
+            plain = AircraftSettings()
+            name = next(n for n in names if getattr(aircraft, n) != getattr(plain, n))
+            raise ValueError(varied.missing(aircraft, name, getattr(aircraft, name), needed))
+        return needed
+
+    def _ballast(self) -> None:
+        """Place ballast on the body's x axis, for another mass and another centre of gravity."""
         self._check_body()
-        self._weather()
+        asked = ("mass_factor", "cg_shift")
+        mass = self._value("inertia/mass-slugs") * SLUG
+        given = varied.ballast(self.settings.aircraft, mass, self._inertia()[1])
+        weight = self._value("inertia/weight-lbs")
+        x, y, z = (self._value(f"inertia/cg-{axis}-in") for axis in "xyz")
+        for number, share, ahead in zip(varied.BALLAST, (given.fore, given.aft), (given.arm, -given.arm), strict=True):
+            which = self._value(self._varies(number, *asked))
+            index = f"[{which:.0f}]" if which else ""
+            places = {"X": x - ahead / INCH, "Y": y, "Z": z}
+            for axis, place in places.items():
+                self._set(self._varies(f"inertia/pointmass-location-{axis}-inches{index}", *asked), place)
+            self._set(self._varies(f"inertia/pointmass-weight-lbs{index}", *asked), share * weight)
 
     def _weather(self) -> None:
         """Give the air the pressure of the day, and its vapour; JSBSim's own standard is 0.5 Pa above ISO 2533."""
