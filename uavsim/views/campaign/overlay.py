@@ -1,0 +1,134 @@
+"""Single flights over each other: a few thin lines, the worst in colours; speed, height and the airspeed's error."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from uavsim.studies.airspeed_flights import LEAD, STEP
+from uavsim.studies.campaign.far import reach
+from uavsim.studies.campaign.many import Many
+from uavsim.views.campaign.errors import error_axes, error_times, far_traces, far_words
+from uavsim.views.campaign.quantities import RMSE, Array
+from uavsim.views.campaign.words import name, remark, title
+from uavsim.views.curves import thin
+from uavsim.views.figure import DARK, GREY, ORANGE, PURPLE, RED, SMALL, label, legend, make_room, sheet
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+THIN = 40  # flights drawn as thin lines
+WORST = (RED, PURPLE, ORANGE)
+WHOLE = 12  # kept flights that are read for their height
+Curve = tuple[Array, Array]
+
+
+def draw(flown: Many) -> "Figure | None":
+    """Draw flights one by one; None where there is no error over time."""
+    time, there = error_times(flown)
+    if not there.any():
+        return None
+    errors = flown.matrix("filtered")
+    far = far_traces(flown, time[there], errors[:, there])
+    worst = _worst(flown, far)
+    spread = np.unique(np.linspace(0, len(errors) - 1, min(THIN, len(errors))).round().astype(int)).tolist()
+    drawn = [row for row in spread if row not in worst and not far[row]]
+    speeds, heights = _paths(flown, set(drawn) | set(worst))
+    panels = [("airspeed error, m/s", {row: _cut(time, errors[row]) for row in (*drawn, *worst)})]
+    if heights:
+        panels.insert(0, ("altitude, m", heights))
+    if speeds:
+        panels.insert(0, ("true airspeed, m/s", speeds))
+    words = f"{len(drawn) + len(worst)} of {len(errors)} flights; coloured: the greatest RMSE over the whole flight"
+    figure, axes = sheet(
+        title(flown), words, (1.0,) * len(panels), size=(11.5, 1.6 + 1.9 * len(panels)), right=2.3
+    )
+    for (one,), (what, curves) in zip(axes, panels, strict=True):
+        for row, curve in curves.items():
+            if row not in worst:
+                one.plot(*thin(*curve, 1500), color=GREY, linewidth=0.5, alpha=0.7)
+        for row, colour in zip(worst, WORST, strict=False):
+            if row in curves:
+                one.plot(*thin(*curves[row], 3000), color=colour, linewidth=1.2)
+        one.set_xlim(float(time[there][0]), float(time[np.isfinite(errors).any(axis=0)][-1]))
+        one.axvline(0.0, color=DARK, linewidth=0.8, linestyle="--")
+        label(one, what)
+        if what.startswith(("true", "alt")):
+            _scale(one, curves)
+    error_axes(axes[-1][0], time, errors[~far if (~far).any() else far])
+    axes[-1][0].set_xlabel("time since true launch, s", fontsize=SMALL + 1.0)
+    _legend(axes[0][0], flown, worst)
+    make_room(figure, 0)
+    remark(figure, [f"not drawn: {far_words(flown, far).split(': ', 1)[1]}" if far.any() else ""])
+    return figure
+
+
+def _worst(flown: Many, far: "np.ndarray[tuple[int], np.dtype[np.bool_]]") -> list[int]:
+    """Return the rows with the greatest RMSE among those with traces that can be drawn."""
+    if len(flown.traces) <= 1:
+        return []
+    rmse = RMSE.of(flown)[: len(flown.traces)]
+    usual = np.isfinite(rmse) & ~far
+    order = np.argsort(np.where(usual, -rmse, np.inf), kind="stable")
+    return [int(row) for row in order[: min(len(WORST), max(1, len(order) // 2))] if usual[row]]
+
+
+def _paths(flown: Many, rows: set[int]) -> tuple[dict[int, Curve], dict[int, Curve]]:
+    """Return true airspeed and height over the time since the true launch, of the flights that have them."""
+    speeds: dict[int, Curve] = {}
+    for row, trace in enumerate(flown.traces):
+        if row in rows and trace.course is not None:
+            t = -LEAD + STEP * np.arange(trace.course.airspeed.size)
+            speeds[row] = (t, trace.course.airspeed)
+    heights: dict[int, Curve] = {}
+    launch = flown.column("launch.true_time")
+    by_index = {flown.index(row): row for row in range(len(flown))}
+    for index, kept in list(flown.kept.items())[:WHOLE]:
+        row = by_index.get(index, -1)
+        if row < 0 or not np.isfinite(launch[row]):
+            continue
+        truth = _truth(kept)
+        if truth is not None:
+            t = truth[0] - launch[row]
+            speeds.setdefault(row, (t, truth[1]))
+            heights[row] = (t, truth[2])
+    return speeds, heights
+
+
+def _truth(kept: object) -> tuple[Array, Array, Array] | None:
+    """Return time, airspeed and height of a kept flight, of which only those are read."""
+    import pandas as pd
+
+    columns = ["t", "airspeed", "altitude"]
+    try:
+        table = pd.read_parquet(kept / "truth.parquet", columns=columns) if isinstance(kept, Path) else kept.truth  # type: ignore[attr-defined]
+        t, speed, height = (table[column].to_numpy(float) for column in columns)
+    except (OSError, KeyError, ValueError):
+        return None
+    return t, speed, height
+
+
+def _cut(time: Array, errors: Array) -> Curve:
+    known = np.isfinite(errors)
+    last = int(np.flatnonzero(known)[-1]) + 1 if known.any() else 0
+    return time[:last], np.where(errors[:last] > 0.0, errors[:last], np.nan)
+
+
+def _scale(axes: "Axes", curves: dict[int, Curve]) -> None:
+    """Scale an axis by what most of its curves need."""
+    ends = np.array([(np.nanmin(y), np.nanmax(y)) for _, y in curves.values() if np.isfinite(y).any()])
+    if not ends.size:
+        return
+    low, high = (reach(side) for side in ends.T)
+    margin = 0.06 * (high.high - low.low) or 1.0
+    if np.isfinite(margin):
+        axes.set_ylim(low.low - margin, high.high + margin)
+
+
+def _legend(axes: "Axes", flown: Many, worst: list[int]) -> None:
+    axes.plot([], [], color=GREY, linewidth=0.8, label="a flight each")
+    for row, colour in zip(worst, WORST, strict=False):
+        words = f"{name(flown, row)}: {RMSE.of(flown)[row]:.3f} m/s"
+        axes.plot([], [], color=colour, linewidth=1.4, label=words)
+    legend(axes)
