@@ -144,11 +144,11 @@ def bound(flight: Flight, courses: Courses) -> tuple[Array, Array]:
     courses : Courses
         Those of many flights, its own among them, or its own alone.
     """
-    t, least = bound_of(flight, courses)
+    t, least = bound_of(flight, courses, AirspeedBound)
     return t, least.sd()
 
 
-def bound_of(flight: Flight, courses: Courses, kind: type[B] = AirspeedBound) -> tuple[Array, B]:  # type: ignore[assignment]
+def bound_of(flight: Flight, courses: Courses, kind: type[B]) -> tuple[Array, B]:
     """Return the times of a flight's readings since its true launch, s, and the bound, which is not yet computed."""
     scenario = scenario_of(flight)
     noise = believed_noise(scenario, draw(scenario).calibration)

@@ -115,10 +115,15 @@ def _detected(flown: "Batch | Many") -> Iterator[Flight]:
 
 
 def against_bound(flown: "Batch | Many") -> dict[str, AgainstBound]:
-    """Return, for each of `STRETCHES` that the flights reach, how near they came; empty without a bound."""
-    from uavsim.studies.campaign.many import Many
+    """Return, for each of `STRETCHES` that the flights reach, how near they came; empty without a bound.
 
-    least = flown.least if isinstance(flown, Many) else least_error(flown)
+    A flight whose error is far beyond all others' would decide the mean alone; it is left out.
+    """
+    from uavsim.studies.campaign.far import far_traces
+    from uavsim.studies.campaign.many import many
+
+    told = many(flown)
+    least = told.least
     if least is None:
         return {}
     time, allowed = least.time, least.sd
@@ -127,6 +132,7 @@ def against_bound(flown: "Batch | Many") -> dict[str, AgainstBound]:
     for row, trace in zip(errors, flown.traces, strict=True):
         values = trace.filtered[offset : offset + time.size]
         row[: values.size] = values
+    errors = errors[~far_traces(told, time, errors)]
     found = {}
     for name, (start, end) in STRETCHES.items():
         part = (time >= start) & (time < end)

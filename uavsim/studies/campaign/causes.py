@@ -54,9 +54,7 @@ def cause_of(reason: str) -> str:
 
 def causes(flown: Many) -> list[Cause]:
     """Return all ways to end, the most frequent first."""
-    keys = list(
-        zip(flown.words("outcome"), map(cause_of, flown.words("reason")), flown.expected.tolist(), strict=True)
-    )
+    keys = list(zip(flown.words("outcome"), map(cause_of, flown.words("reason")), flown.expected.tolist(), strict=True))
     first: dict[tuple[str, str, bool], int] = {}
     for row, key in enumerate(keys):
         first.setdefault(key, row)

@@ -43,7 +43,7 @@ def running_share(true: NDArray[np.bool_], points: int = POINTS) -> Running:
 
 
 def running_quantile(values: Array, probability: float, points: int = POINTS) -> Running:
-    """Return a quantile of the flights that have a value, with its order-statistic interval; inf is above all others."""
+    """Return a quantile of the flights that have a value, with its order-statistic interval; inf is above all."""
     n = sizes(values.size, points)
     found = np.full((3, n.size), np.nan)
     for i, m in enumerate(n):

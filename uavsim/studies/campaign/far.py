@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.studies.campaign.many import Many
+
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
@@ -56,3 +58,28 @@ def reach(values: Array, sound: Mask | None = None) -> Reach:
     with np.errstate(invalid="ignore"):
         shown = usual & (values >= low - FAR * spread) & (values <= high + FAR * spread)
     return Reach(float(values[shown].min()), float(values[shown].max()), shown, ~np.isnan(values) & ~shown)
+
+
+def far_traces(flown: Many, time: Array, errors: Array) -> Mask:
+    """Return which flights' errors after launch are so large that no scale shows them and the others.
+
+    Their peaks are compared by their logarithms, and must be ten times those of a usual flight; never all of them.
+
+    Parameters
+    ----------
+    time
+        Shape (n,), s since the true launch.
+    errors
+        Shape (traces, n), m/s; NaN where there is none.
+    """
+    after = errors[:, time > 0.0] if (time > 0.0).any() else errors
+    if not after.shape[1]:
+        return np.zeros(len(errors), dtype=bool)
+    peaks = np.where(np.isnan(after), -np.inf, np.abs(after)).max(axis=1)
+    peaks[peaks == -np.inf] = np.nan
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sizes = np.log10(peaks)
+    found = reach(sizes, flown.sound[: peaks.size])
+    far = found.beyond & (peaks > 0.0)
+    far[far] &= sizes[far] > np.median(sizes[found.shown]) + 1.0 if found.shown.any() else False
+    return np.asarray(far & ~far.all(), dtype=bool)

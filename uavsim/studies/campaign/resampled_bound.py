@@ -75,4 +75,3 @@ class ResampledBound(AirspeedBound):
             self.resampled.append(np.sqrt(variance + self._share**2 * (self._weights @ speed**2)))
         self._reading += 1
         return super()._told(t)
-

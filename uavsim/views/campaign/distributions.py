@@ -1,7 +1,7 @@
 """Distributions of what matters over the flights: histograms, or points where flights are few, and quantiles."""
 
 from math import ceil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -9,12 +9,13 @@ from uavsim.studies.campaign.far import Reach, reach
 from uavsim.studies.campaign.many import Many
 from uavsim.views.campaign.quantities import SHOWN, Array, Quantity, bands, number
 from uavsim.views.campaign.words import floor_of, limit_lines, not_to_scale, remark, title
-from uavsim.views.figure import BLACK, BLUE, DARK, GREY, PHASES, RED, SMALL, label, make_room, sheet
+from uavsim.views.figure import BLACK, BLUE, DARK, PHASES, RED, SMALL, label, make_room, sheet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+FEWEST = 2  # flights to speak of a distribution
 FEW = 30  # flights, below which points say more than a histogram
 MOST_BINS = 60
 COLUMNS = 4
@@ -24,7 +25,9 @@ REMARKS = 3  # lines of remarks; the others are counted
 
 
 def draw(flown: Many) -> "Figure | None":
-    """Draw all distributions; None where there are none."""
+    """Draw all distributions; None where there are none, or a single flight."""
+    if len(flown) < FEWEST:
+        return None
     found = [
         (quantity, values, within)
         for quantity in SHOWN
@@ -43,7 +46,7 @@ def draw(flown: Many) -> "Figure | None":
         words += "; dashed: required"
     size = (max(4.5, 3.0 * columns), 1.2 + ROW * rows)
     figure, axes = sheet(
-        title(flown), words, (1.0,) * rows, (1.0,) * columns, size=size, right=0.2, share=False, gap=(0.62, 0.18)
+        title(flown), words, (1.0,) * rows, (1.0,) * columns, size=size, right=0.2, share=False, gap=(0.56, 0.18)
     )
     flat = [one for row in axes for one in row]
     remarks = []
@@ -75,10 +78,7 @@ def _panel(axes: "Axes", flown: Many, quantity: Quantity, values: Array, within:
         top = 1.0
         axes.set_yticks([])
     else:
-        bins = np.histogram_bin_edges(shown, "auto", (within.low, within.high)) if within.high > within.low else None
-        if bins is None or bins.size > MOST_BINS + 1:
-            bins = np.linspace(within.low - 0.1 * margin, within.high + 0.1 * margin, MOST_BINS + 1 if bins is not None else 6)
-        counts, _, _ = axes.hist(shown, bins, color=colour, alpha=0.75)
+        counts, _, _ = axes.hist(shown, _bins(shown, within).tolist(), color=colour, alpha=0.75)
         top = float(np.max(counts))
         axes.locator_params(axis="y", nbins=4, integer=True)
     axes.locator_params(axis="x", nbins=5)
@@ -89,8 +89,21 @@ def _panel(axes: "Axes", flown: Many, quantity: Quantity, values: Array, within:
     label(axes, x=quantity.label)
     axes.xaxis.label.set_fontsize(SMALL + 0.5)
     there = int((~np.isnan(values)).sum())
+    small: dict[str, Any] = {"fontsize": SMALL - 0.5, "color": DARK, "pad": 2.0}
     if there < len(flown):
-        axes.set_title(f"of {there} flights", loc="right", fontsize=SMALL - 0.5, color=GREY, pad=2.0)
+        axes.set_title(f"n = {there}", loc="right", **small)
+    median = bands(values[~np.isnan(values)], ("median",))["median"]
+    ends = ", ".join("–" if end is None else number(end, quantity.digits) for end in (median.low, median.high))
+    axes.set_title(f"median {number(median.value, quantity.digits)} [{ends}]", loc="left", **small)
+
+
+def _bins(shown: Array, within: Reach) -> Array:
+    """Return the edges of a histogram's bins: the usual rule's, but not too many; equal values have one bin."""
+    if within.high <= within.low:
+        width = floor_of(shown)
+        return np.array([within.low - 0.1 * width, within.high + 0.1 * width])
+    bins = np.histogram_bin_edges(shown, "auto", (within.low, within.high))
+    return np.asarray(bins if bins.size <= MOST_BINS + 1 else np.linspace(within.low, within.high, MOST_BINS + 1))
 
 
 def _quantiles(axes: "Axes", sample: Array, top: float) -> None:
@@ -105,8 +118,3 @@ def _quantiles(axes: "Axes", sample: Array, top: float) -> None:
             if end is None:
                 axes.plot(place, y, mark, color=colour, markersize=4.5, clip_on=False, zorder=4.0)
         axes.plot(np.clip(found.value, left, right), y, "o", color=colour, markersize=4.0, zorder=3.0)
-
-
-def told(quantity: Quantity, value: float) -> str:
-    """Return a value with its unit."""
-    return f"{number(value, quantity.digits)} {quantity.unit}".rstrip()

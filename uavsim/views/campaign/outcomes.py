@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 MOST = 12  # causes with a bar of their own
 LONGEST = 52  # characters of a cause
-LEFT = 3.9  # in, room for the causes
+CHARACTER, LEAST = 0.078, 1.0  # in: mean width of a character, and room for the causes at least
 
 
 def draw(flown: Many) -> "Figure | None":
@@ -36,8 +36,9 @@ def draw(flown: Many) -> "Figure | None":
         f"[{100 * low:.2f}, {100 * high:.2f}]; whiskers: 95 % (Clopper–Pearson)"
     )
     size = (10.5, 1.65 + 0.42 * len(rows))
-    figure, ((axes,),) = sheet(title(flown), words, (1.0,), size=size, right=1.5)
-    figure.subplots_adjust(left=LEFT / size[0])
+    figure, ((axes,),) = sheet(title(flown), words, (1.0,), size=size, right=1.75)
+    left = max(LEAST, 0.35 + CHARACTER * max(len(name) for name, _, _ in rows))
+    figure.subplots_adjust(left=left / size[0])
     across = axes.get_yaxis_transform()
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(0.0, 100.0)
@@ -47,7 +48,7 @@ def draw(flown: Many) -> "Figure | None":
         axes.plot((low, high), (i, i), color=BLACK, linewidth=1.2)
         axes.plot((low, high), (i, i), "|", color=BLACK, markersize=7.0, clip_on=False)
         axes.text(-0.015, i, literal(name), transform=across, ha="right", va="center", fontsize=SMALL + 0.5)
-        words = f"{count}   [{low:.3g}, {high:.3g}] %"
+        words = f"{count}   [{low:.2f}, {high:.2f}] %"
         axes.text(1.015, i, words, transform=across, ha="left", va="center", fontsize=SMALL, color=DARK)
     axes.set_yticks(np.arange(len(rows)), [""] * len(rows))
     axes.tick_params(axis="y", length=0.0)

@@ -6,11 +6,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from uavsim.studies.airspeed_flights import LEAD, STEP
-from uavsim.studies.campaign.far import reach
+from uavsim.studies.campaign.far import far_traces, reach
 from uavsim.studies.campaign.many import Many
-from uavsim.views.campaign.errors import error_axes, error_times, far_traces, far_words
+from uavsim.views.campaign.errors import (
+    ENLARGED,
+    error_axes,
+    error_times,
+    far_words,
+    rebinned,
+    together,
+)
 from uavsim.views.campaign.quantities import RMSE, Array
-from uavsim.views.campaign.words import name, remark, title
+from uavsim.views.campaign.words import flights, name, remark, title
 from uavsim.views.curves import thin
 from uavsim.views.figure import DARK, GREY, ORANGE, PURPLE, RED, SMALL, label, legend, make_room, sheet
 
@@ -18,16 +25,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+FEWEST = 2  # flights to lay over each other
 THIN = 40  # flights drawn as thin lines
 WORST = (RED, PURPLE, ORANGE)
 WHOLE = 12  # kept flights that are read for their height
+ERROR = "airspeed error, m/s"
 Curve = tuple[Array, Array]
 
 
 def draw(flown: Many) -> "Figure | None":
     """Draw flights one by one; None where there is no error over time."""
     time, there = error_times(flown)
-    if not there.any():
+    if not there.any() or len(flown.traces) < FEWEST:
         return None
     errors = flown.matrix("filtered")
     far = far_traces(flown, time[there], errors[:, there])
@@ -35,33 +44,46 @@ def draw(flown: Many) -> "Figure | None":
     spread = np.unique(np.linspace(0, len(errors) - 1, min(THIN, len(errors))).round().astype(int)).tolist()
     drawn = [row for row in spread if row not in worst and not far[row]]
     speeds, heights = _paths(flown, set(drawn) | set(worst))
-    panels = [("airspeed error, m/s", {row: _cut(time, errors[row]) for row in (*drawn, *worst)})]
-    if heights:
-        panels.insert(0, ("altitude, m", heights))
+    shown = [*drawn, *worst]
+    panels: list[tuple[str, dict[int, Curve]]] = [(ERROR, {})]
+    if len(heights) > 1:
+        panels.insert(0, ("altitude, m\n(kept flights)", heights))
     if speeds:
         panels.insert(0, ("true airspeed, m/s", speeds))
-    words = f"{len(drawn) + len(worst)} of {len(errors)} flights; coloured: the greatest RMSE over the whole flight"
-    figure, axes = sheet(
-        title(flown), words, (1.0,) * len(panels), size=(11.5, 1.6 + 1.9 * len(panels)), right=2.3
-    )
-    for (one,), (what, curves) in zip(axes, panels, strict=True):
-        for row, curve in curves.items():
-            if row not in worst:
-                one.plot(*thin(*curve, 1500), color=GREY, linewidth=0.5, alpha=0.7)
-        for row, colour in zip(worst, WORST, strict=False):
-            if row in curves:
-                one.plot(*thin(*curves[row], 3000), color=colour, linewidth=1.2)
-        one.set_xlim(float(time[there][0]), float(time[np.isfinite(errors).any(axis=0)][-1]))
-        one.axvline(0.0, color=DARK, linewidth=0.8, linestyle="--")
-        label(one, what)
-        if what.startswith(("true", "alt")):
-            _scale(one, curves)
-    error_axes(axes[-1][0], time, errors[~far if (~far).any() else far])
-    axes[-1][0].set_xlabel("time since true launch, s", fontsize=SMALL + 1.0)
-    _legend(axes[0][0], flown, worst)
+    words = f"{len(shown)} of {flights(len(flown))}"
+    words += "; coloured: the greatest airspeed RMSE over the whole flight" if worst else ""
+    end = float(time[np.isfinite(errors).any(axis=0)][-1])
+    columns = (1.5, 1.0) if end > 2.0 * ENLARGED else (1.0,)
+    size = (12.5, 1.6 + 1.9 * len(panels))
+    figure, axes = sheet(title(flown), words, (1.0,) * len(panels), columns, size=size, right=2.3)
+    for row, (what, curves) in zip(axes, panels, strict=True):
+        for i, one in enumerate(row):
+            one.set_xlim(float(time[there][0]), ENLARGED if i else end)
+            if what == ERROR:
+                every = together(time) if i == 0 and len(columns) > 1 else 1
+                t, own = rebinned(every, time, errors[shown])
+                _lines(one, {k: _cut(t, values) for k, values in zip(shown, own, strict=True)}, worst)
+                error_axes(one, time[there], errors[np.ix_(~far, there)])
+            else:
+                _lines(one, curves, worst)
+                _scale(one, curves)
+            one.axvline(0.0, color=DARK, linewidth=0.8, linestyle="--")
+        label(row[0], what)
+    for one in axes[-1]:
+        one.set_xlabel("time since true launch, s", fontsize=SMALL + 1.0)
+    _legend(axes[0][-1], flown, worst)
     make_room(figure, 0)
-    remark(figure, [f"not drawn: {far_words(flown, far).split(': ', 1)[1]}" if far.any() else ""])
+    remark(figure, [far_words(flown, far)])
     return figure
+
+
+def _lines(axes: "Axes", curves: dict[int, Curve], worst: list[int]) -> None:
+    for row, curve in curves.items():
+        if row not in worst:
+            axes.plot(*thin(*curve, 1500), color=GREY, linewidth=0.5, alpha=0.7)
+    for row, colour in zip(worst, WORST, strict=False):
+        if row in curves:
+            axes.plot(*thin(*curves[row], 3000), color=colour, linewidth=1.1)
 
 
 def _worst(flown: Many, far: "np.ndarray[tuple[int], np.dtype[np.bool_]]") -> list[int]:
@@ -79,7 +101,7 @@ def _paths(flown: Many, rows: set[int]) -> tuple[dict[int, Curve], dict[int, Cur
     speeds: dict[int, Curve] = {}
     for row, trace in enumerate(flown.traces):
         if row in rows and trace.course is not None:
-            t = -LEAD + STEP * np.arange(trace.course.airspeed.size)
+            t = np.asarray(-LEAD + STEP * np.arange(trace.course.airspeed.size), dtype=np.float64)
             speeds[row] = (t, trace.course.airspeed)
     heights: dict[int, Curve] = {}
     launch = flown.column("launch.true_time")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import ceil, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +56,7 @@ SHOWN = (
     Quantity("airspeed.stroke.reduction_percent", "reduction in the stroke", "%", 1.0, 1, "  in the stroke, %"),
     Quantity("airspeed.transition.reduction_percent", "reduction in transition", "%", 1.0, 1, "  in transition, %"),
     Quantity("airspeed.cruise.reduction_percent", "reduction in cruise", "%", 1.0, 1, "  in cruise, %"),
-    Quantity("airspeed.cruise.coverage_95", "within ±1.96 sd in cruise", ""),
+    Quantity("airspeed.cruise.coverage_95", "within ±1.96 sd in cruise", "", cell="within ±1.96 sd, cruise"),
 )
 """Numbers of the score whose distribution is told and drawn."""
 
@@ -83,10 +84,23 @@ def bands(sample: Array, names: Iterable[str] = QUANTILES) -> dict[str, Quantile
     return {name: band(sample, QUANTILES[name]) for name in names}
 
 
+def precise(value: float, low: float, high: float, digits: int) -> str:
+    """Return an estimate and its interval with as many digits as tell its ends apart."""
+    width = high - low
+    if np.isfinite(width) and width > 0.0:
+        digits = min(max(digits, ceil(-log10(width)) + 1), 6)
+    return f"{number(value, digits)} [{number(low, digits)}, {number(high, digits)}]"
+
+
 def number(value: float, digits: int = 3) -> str:
     """Return a number as people read it, with a power of ten where it is absurd."""
     if np.isnan(value):
         return "–"
-    if abs(value) >= 1e6:
-        return f"{value:.1e}"
+    if np.isinf(value):
+        return "∞" if value > 0.0 else "−∞"
+    size = abs(value)
+    if size >= 1e6:
+        mantissa, exponent = f"{value:.1e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    digits = digits if size < 100.0 else min(digits, 1) if size < 1e4 else 0
     return f"{round(value, digits) + 0:.{digits}f}"  # + 0: no minus before a nought

@@ -1,4 +1,4 @@
-"""What the figures of many flights have in common: the title, how a flight is named, remarks on what is not to scale."""
+"""What figures of many flights have in common: titles, names of flights, remarks on what is not to scale."""
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
