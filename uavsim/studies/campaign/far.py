@@ -5,6 +5,7 @@ value does not decide it. Flights that diverged or failed have no say in it.
 """
 
 from dataclasses import dataclass
+from math import ceil, floor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +15,9 @@ from uavsim.studies.campaign.many import Many
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-FAR = 10.0  # distances of the quartiles beyond them; 1e-11 of a normal's values, 2e-4 of a lognormal's of σ = 1
-LEAST = 0.1  # of the size of the quartiles: their least distance, for values that are nearly equal
+FAR = 10.0  # distances of the quartiles beyond them; no value of a normal's, 3e-3 of a lognormal's of σ = 1
+LEAST = 0.3  # of the size of the quartiles: their least distance, so that up to four times that size all is shown
+TEN = 10.0  # times the usual: what an error must exceed besides, since errors are drawn on logarithmic axes
 ABSURD = 1e30  # beyond that arithmetic overflows sooner or later
 
 
@@ -53,7 +55,9 @@ def reach(values: Array, sound: Mask | None = None) -> Reach:
     base = usual if sound is None or not (usual & sound).any() else usual & sound
     if not base.any():
         return Reach(np.nan, np.nan, np.zeros(values.size, dtype=bool), ~np.isnan(values))
-    low, high = np.quantile(values[base], (0.25, 0.75))
+    ordered = np.sort(values[base])  # quartiles from within: one of four values decides none of them
+    low, high = ordered[ceil(0.25 * (ordered.size - 1))], ordered[floor(0.75 * (ordered.size - 1))]
+    low, high = min(low, high), max(low, high)
     spread = max(high - low, LEAST * max(abs(low), abs(high)), 1e-12)
     with np.errstate(invalid="ignore"):
         shown = usual & (values >= low - FAR * spread) & (values <= high + FAR * spread)
@@ -63,7 +67,7 @@ def reach(values: Array, sound: Mask | None = None) -> Reach:
 def far_traces(flown: Many, time: Array, errors: Array) -> Mask:
     """Return which flights' errors after launch are so large that no scale shows them and the others.
 
-    Their peaks are compared by their logarithms, and must be ten times those of a usual flight; never all of them.
+    Their peaks must be ten times the usual one besides; never all of them.
 
     Parameters
     ----------
@@ -77,9 +81,7 @@ def far_traces(flown: Many, time: Array, errors: Array) -> Mask:
         return np.zeros(len(errors), dtype=bool)
     peaks = np.where(np.isnan(after), -np.inf, np.abs(after)).max(axis=1)
     peaks[peaks == -np.inf] = np.nan
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sizes = np.log10(peaks)
-    found = reach(sizes, flown.sound[: peaks.size])
-    far = found.beyond & (peaks > 0.0)
-    far[far] &= sizes[far] > np.median(sizes[found.shown]) + 1.0 if found.shown.any() else False
+    found = reach(peaks, flown.sound[: peaks.size])
+    usual = float(np.median(peaks[found.shown])) if found.shown.any() else np.inf
+    far = found.beyond & (np.nan_to_num(peaks) > TEN * usual)
     return np.asarray(far & ~far.all(), dtype=bool)
