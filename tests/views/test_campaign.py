@@ -11,6 +11,7 @@ import pytest
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from uavsim.flight import Flight
 from uavsim.scenario import Requirement, Scenario
 from uavsim.studies.batch import ERROR_START, ERROR_STEP, ErrorTrace
 from uavsim.studies.batch_cramer_rao import Least
@@ -216,6 +217,24 @@ def test_the_worst_flights_are_those_highlighted() -> None:
     figure = overlay.draw(flown)
     assert figure is not None
     assert next(line for line in words(figure).splitlines() if line.startswith("flight ")) == "flight 17: 0.500 m/s"
+
+
+def test_kept_flights_may_be_folders(catapult: Flight, tmp_path: Path) -> None:
+    """Height and true speed are read from the folders, as from flights in memory; one that is gone is left out."""
+    for name in ("0", "1"):
+        (tmp_path / name).mkdir()
+        catapult.write(tmp_path / name)
+    flown = made(4)
+    flown.runs["launch.true_time"] = catapult.score["launch"]["true_time"]
+    flights = dataclasses.replace(flown, kept={0: catapult, 1: catapult})
+    folders = dataclasses.replace(flown, kept={i: tmp_path / str(i) for i in range(3)})
+    curves = []
+    for one in (flights, folders):
+        figure = overlay.draw(one)
+        assert figure is not None
+        assert [axes.get_ylabel() for axes in figure.axes[::2]][1].startswith("altitude")
+        curves.append([line.get_xydata() for axes in figure.axes for line in axes.lines])
+    assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(*curves, strict=True))
 
 
 def test_required_bounds_are_drawn_where_they_are() -> None:

@@ -43,7 +43,8 @@ def draw(flown: Many) -> "Figure | None":
     worst = _worst(flown, far)
     spread = np.unique(np.linspace(0, len(errors) - 1, min(THIN, len(errors))).round().astype(int)).tolist()
     drawn = [row for row in spread if row not in worst and not far[row]]
-    speeds, heights = _paths(flown, set(drawn) | set(worst))
+    begun = [row for row, trace in enumerate(flown.traces) if trace.course is not None and not far[row]][:THIN]
+    speeds, heights = _paths(flown, {*drawn, *worst, *begun})
     shown = [*drawn, *worst]
     panels: list[tuple[str, dict[int, Curve]]] = [(ERROR, {})]
     if len(heights) > 1:
