@@ -1,6 +1,5 @@
 """Plots of flights: drawn for whatever a record holds, readable, equal for equal flights."""
 
-import copy
 import dataclasses
 from collections.abc import Callable
 from pathlib import Path
@@ -21,7 +20,7 @@ from uavsim.score import Judged, score
 from uavsim.studies.batch import Batch
 from uavsim.studies.campaign.flown import ErrorTrace, row_of
 from uavsim.truth import STANDARD_GRAVITY
-from uavsim.views import batch, launch, plots, pressure, trajectory
+from uavsim.views import launch, plots, pressure, trajectory
 from uavsim.views.curves import thin
 from uavsim.views.figure import BLUE, PHASES, RED, make_room, sheet
 from uavsim.views.marks import Mark, flags, stack
@@ -113,7 +112,7 @@ def check_png(path: Path) -> None:
         width, height = image.size
         pixels = np.asarray(image.convert("L"))
     assert 900 <= width <= 2000
-    assert 500 <= height <= 1500
+    assert 250 <= height <= 1500
     inked = float((pixels < 250).mean())
     assert 0.02 < inked < 0.9
 
@@ -266,21 +265,6 @@ def several(flight: Flight) -> Batch:
     return batch_of([flight, made_up(seed=2), made_up(push=36.0, seed=3)])
 
 
-def test_the_error_axis_is_that_of_the_flight_not_of_still_air_before_it(several: Batch) -> None:
-    """Before the launch an estimate of still air may be right to 1e-9 m/s, which is no scale for what follows."""
-    figure = batch._airspeed_error(several)
-    assert figure is not None
-    expected = figure.axes[0].get_ylim()
-    still = copy.deepcopy(several)
-    before = still.error_time <= 0.0
-    for trace in still.traces:
-        n = min(trace.filtered.size, before.size)
-        trace.filtered[:n][before[:n]] = 1e-9
-    figure = batch._airspeed_error(still)
-    assert figure is not None
-    assert figure.axes[0].get_ylim()[0] == expected[0] > 1e-4
-
-
 def test_faults_and_what_was_noticed_of_them_are_marked() -> None:
     """Of both, from the scenario and from on board, and no mark for a fault that begins after the end."""
     faults = 'air_data.total_port.faults=[{kind="blocked",start=6,stop=9},{kind="ice",start=300}]'
@@ -322,21 +306,6 @@ def test_the_labels_of_many_faults_stay_out_of_the_path_above(flight: Flight) ->
     drawn = {text.get_text(): text.get_window_extent(renderer) for text in angle.texts}
     assert "total flagged" in drawn
     assert max(box.y1 for box in drawn.values()) < path.xaxis.label.get_window_extent(renderer).y0 + 1.0
-
-
-def test_missed_launches_have_no_latency_to_draw(tmp_path: Path) -> None:
-    missed = batch_of([made_up(push=36.0)], complete=False)
-    missed.traces[0] = ErrorTrace(1, *(np.empty(0) for _ in range(3)))
-    assert [path.name for path in batch.save_batch_plots(missed, tmp_path)] == ["outcomes.png"]
-
-
-def test_a_launch_that_was_missed_counts_as_one_detected_never(several: Batch) -> None:
-    latencies = batch.latencies_since(several, "true_time")
-    expected = [1e3 * several.runs["launch.latency"][i] for i in (0, 1)]
-    assert latencies[:2] == pytest.approx(expected)
-    assert latencies[2] == np.inf
-    # the third never reaches 4.5 g, so nothing is said of it since then
-    assert batch.latencies_since(several, "crossing_time").size == 2
 
 
 def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_path: Path) -> None:

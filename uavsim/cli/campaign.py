@@ -110,7 +110,7 @@ def _fly(
     plan: "Plan", rule: "Keep", means: Means, *, out: Any, given: list[str] | None, resume: bool, overwrite: bool,
     plots: bool, as_json: bool,
 ) -> None:  # fmt: skip
-    from uavsim.studies.batch import batch_of
+    from uavsim.studies.campaign.many import many_of
     from uavsim.studies.campaign.record import Record
     from uavsim.views import batch as view
     from uavsim.views import documents, terminal
@@ -121,12 +121,12 @@ def _fly(
         remark([*ready(plan.flight(0), given).remarks, *_need(plan, rule, place.folder)])
         record = Record(place.folder, plan, keep=str(rule), before=before)
         flights = flown(record, means, rule)
-        all_ = batch_of(flights)
+        all_ = many_of(flights)
         view.close(record, flights, all_, plots=plots)
     if as_json:
         document(documents.batch(all_, place.target))
     else:
-        terminal.print_batch(all_)
+        terminal.print_batch(all_, place.target)
         terminal.say(f"written to {place.target}")
     say_unfinished(flights)
     leave(bool((all_.runs["outcome"] == all_.runs["expected"]).all() and all_.runs["requirements.met"].all()))

@@ -199,9 +199,3 @@ def _keep_later(record: Record, crew: Crew, keep: Keep, limit: float) -> None:
 
 def _fly_whole(plan: Plan, limit: float, position: int) -> Flown:
     return fly_position(plan, Keep("all"), limit, position)
-
-
-def first_flight(flights: Flights) -> "tuple[int, Flight] | None":
-    """Return the first flight that was kept, with its index; None if there is none."""
-    kept = flights.kept()
-    return (kept[0], flights.flight(kept[0])) if kept else None
