@@ -132,7 +132,7 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
             "each a list of a number above 0 and below 500 and a number above 0 and of",
         ),
         ("name=\udcff", "must be text"),
-        ("requirements=3", "must be a list, each a group of key, minimum and maximum"),
+        ("requirements=3", "must be a list, each a group of key, statistic, equals, minimum"),
         ('requirements=[{key="airspeed.rmse", maximun=1}]', "unknown key 'maximun' in requirements[0]"),
         ('requirements=[{key="airspeed.rmse", maximun=1}]', "did you mean 'maximum'?"),
         ("requirements=[{maximum=1}]", "requirements[0]: key is missing"),

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from annotated_types import Interval
 
@@ -37,7 +37,9 @@ from uavsim.plants.plant import STEP_RATES
 from uavsim.plants.rail import CONTACT_FREQUENCY, DAMPING_RATIO
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.plugins import PluginError, Source, check_options, find, of_class, plugged_in, source_of
-from uavsim.score_keys import NUMBERS
+from uavsim.requirements import Requirement
+from uavsim.requirements import check as check_requirements
+from uavsim.score_keys import Outcome
 from uavsim.settings import SettingError
 from uavsim.spread import Correlation, Dispersion
 from uavsim.spread.check import check as check_spread
@@ -48,10 +50,6 @@ if TYPE_CHECKING:
 
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
 Drawn = Annotated[int, Interval(ge=0, le=2**63 - 1)]
-Outcome = Literal[
-    "cruise", "missed_launch", "false_launch", "crashed", "landed", "diverged", "onboard_failed", "timeout",
-    "completed",
-]  # fmt: skip
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
@@ -61,23 +59,6 @@ WEATHER = "environment.preset"
 MOST_STEPS = 3_600_000  # of the plant in a flight, an hour at the coarsest step; their truth takes 2 GB
 MOST_READINGS = 6_000_000  # of one sensor in a flight, which take 1.4 GB and a minute
 NAME = r"(?!.*[\u115f\u1160\u3164\uffa0])[^\W_][\w .+-]{0,99}"  # without the letters of Unicode that have no ink
-
-
-@dataclass(frozen=True, slots=True)
-class Requirement:
-    """A bound on a number of the score, `minimum` ≤ value ≤ `maximum`; see [score.md](score.md).
-
-    Attributes
-    ----------
-    key
-        Of the score, joined by dots; null meets no bound.
-    minimum, maximum
-        Bounds, in the number's own unit.
-    """
-
-    key: str
-    minimum: float | None = None
-    maximum: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +134,7 @@ class Scenario:
     correlations
         How those go together.
     requirements
-        Bounds on figures of the score.
+        Bounds on figures of the score, of each flight or of many.
     plugins
         Who flies that is not ours; written into a flight's folder, and then only they may fly it.
     """
@@ -302,7 +283,7 @@ def load_scenario(
         if seed is not None:
             values["seed"], origins["seed"] = seed, seed_name
         scenario = _checked(values)
-        _check_requirements(scenario)
+        check_requirements(scenario.requirements)  # a record keeps what it was judged by, whatever a score has now
     except SettingError as error:
         given = [origin for key in error.keys for k, origin in origins.items() if _within(k, key) or _within(key, k)]
         raise ValueError(f"{[*given, where][0]}: {error.problem}") from None
@@ -808,15 +789,3 @@ def _check_reach(s: Scenario, need: Need) -> None:
             f"detector.{need.level_key}",
             "accelerometer",
         )
-
-
-def _check_requirements(s: Scenario) -> None:
-    """Refuse a slip in a file; a record keeps what it was judged by, even if the score no longer has it."""
-    for i, r in enumerate(s.requirements):
-        where = f"requirements[{i}]"
-        if r.key not in NUMBERS:
-            near = nearest(r.key, NUMBERS)
-            hint = f"; did you mean {near!r}?" if near else "; see score.json for those there are"
-            raise SettingError(f"{where}.key = {shown(r.key)}: is no number of the score{hint}", "requirements")
-        if r.minimum is not None and r.maximum is not None and r.minimum > r.maximum:
-            raise SettingError(f"{where} ({r.key}): minimum is above maximum", "requirements")

@@ -16,7 +16,7 @@ from uavsim.studies.campaign.far import far_traces, reach
 from uavsim.studies.campaign.many import Many
 from uavsim.studies.campaign.resampled_bound import RESAMPLES, ResampledBound
 from uavsim.studies.intervals import share_interval
-from uavsim.studies.quantiles import quantile_band, ranks
+from uavsim.studies.quantiles import quantile_band, quantile_ranks
 
 
 def test_an_envelope_is_the_quantile_and_band_of_the_flights_at_each_time() -> None:
@@ -42,7 +42,7 @@ def test_the_band_of_an_envelope_covers_as_often_as_it_says() -> None:
     values = np.random.default_rng(5).normal(size=(n, times))
     for probability, true in ((0.5, 0.0), (0.95, 1.6448536)):
         (found,) = envelopes(values, (probability,))
-        low, high = ranks(n, probability)
+        low, high = quantile_ranks(n, probability)
         exact = binom.cdf(high - 1, n, probability) - binom.cdf(low - 1, n, probability)
         covered = np.mean((found.low <= true) & (true <= found.high))
         assert exact >= 0.95

@@ -21,11 +21,12 @@ from uavsim.cli.scenarios import scenarios
 from uavsim.cli.sensors import sensors
 from uavsim.cli.survey import survey
 from uavsim.cli.tune import tune
+from uavsim.cli.verify import verify
 from uavsim.failure import PartError
 from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
-COMMANDS = (scenarios, fly, campaign, replay, sensors, roc, tune, survey, paper, plugins, bench)
+COMMANDS = (scenarios, fly, campaign, verify, replay, sensors, roc, tune, survey, paper, plugins, bench)
 """In the order of the help."""
 
 
@@ -62,6 +63,7 @@ def uavsim(
       uavsim fly catapult --seed 7
       uavsim fly gusty --seeds 1-50 --out output/gusty-50
       uavsim campaign dispersed --runs 1000 --out output/dispersed
+      uavsim verify dispersed --requirements small-uav --out output/verify
       uavsim replay output/catapult-7
       uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
       uavsim sensors bmp390

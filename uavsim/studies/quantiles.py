@@ -41,10 +41,8 @@ def quantile_band(sample: NDArray[np.float64], probability: float, confidence: f
     """
     if sample.size == 0 or not np.all(np.isfinite(sample)):
         raise ValueError("a quantile needs at least one value, and finite ones")
-    if not 0.0 < probability < 1.0 or not 0.0 < confidence < 1.0:
-        raise ValueError("probabilities must lie between 0 and 1")
     ordered = np.sort(sample)
-    low, high = ranks(ordered.size, probability, confidence)
+    low, high = quantile_ranks(ordered.size, probability, confidence)
     return QuantileBand(
         probability,
         float(np.quantile(ordered, probability)),
@@ -54,10 +52,18 @@ def quantile_band(sample: NDArray[np.float64], probability: float, confidence: f
 
 
 @cache
-def ranks(n: int, probability: float, confidence: float = 0.95) -> tuple[int, int]:
-    """Return l and u of the order statistics x_(l) and x_(u) that bound a quantile; 0 or n + 1: there is none."""
+def quantile_ranks(n: int, probability: float, confidence: float = 0.95) -> tuple[int, int]:
+    """Ranks, 1 … n, of the order statistics that bound a quantile; 0 and n + 1 where there is no bound.
+
+    Raises
+    ------
+    ValueError
+        If the probabilities lie outside (0, 1).
+    """
     from scipy.stats import binom
 
+    if not 0.0 < probability < 1.0 or not 0.0 < confidence < 1.0:
+        raise ValueError("probabilities must lie between 0 and 1")
     tail = (1.0 - confidence) / 2.0
     counts = binom.cdf(np.arange(n + 1), n, probability)  # P(B <= k)
     # x_(l) is below the quantile unless fewer than l values are: P(B <= l - 1) <= tail.

@@ -173,8 +173,8 @@ def fly_plan(
     try:
         not_done = crew.each(partial(fly_position, plan, keep, limit), wanted, done=done, limit=limit)
         left = [Left(wanted[one.position], one.why) for one in not_done]
-        if keep.later and record.finished == plan.size:
-            _keep_later(record, crew, keep, limit)
+        if record.finished == plan.size:
+            keep_later(record, crew, keep, limit)
     except BaseException:
         with suppress(OSError):  # what ended it says more
             describe(())
@@ -182,9 +182,12 @@ def fly_plan(
     return Flights(record.folder, plan, tuple(left), *describe(left))
 
 
-def _keep_later(record: Record, crew: Crew, keep: Keep, limit: float) -> None:
-    """Fly those once more that only all rows together tell."""
+def keep_later(record: Record, crew: Crew, keep: Keep, limit: float | None = None) -> None:
+    """Fly those once more that only all rows together tell; nothing by another rule."""
+    if not keep.later:
+        return
     plan = record.plan
+    limit = limit_of(plan) if limit is None else limit
     kept = record.folder / FLIGHTS
     indices = [i for i in keep.among(frame(record.folder, keep.columns)) if not (kept / str(i)).is_dir()]
     positions = [position_of(plan, index) for index in indices]

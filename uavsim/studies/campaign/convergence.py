@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.studies.intervals import share_interval
-from uavsim.studies.quantiles import ranks
+from uavsim.studies.quantiles import quantile_ranks
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def running_quantile(values: Array, probability: float, points: int = POINTS) ->
         place = probability * (sample.size - 1)
         below, above = sample[int(np.floor(place))], sample[int(np.ceil(place))]
         found[0, i] = below if below == above or place % 1.0 == 0.0 else below + (place % 1.0) * (above - below)
-        low, high = ranks(sample.size, probability)
+        low, high = quantile_ranks(sample.size, probability)
         if low >= 1:
             found[1, i] = sample[low - 1]
         if high <= sample.size:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.studies.quantiles import ranks
+from uavsim.studies.quantiles import quantile_ranks
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def envelopes(values: Array, probabilities: Sequence[float], confidence: float =
             below, above = column[int(np.floor(place))], column[int(np.ceil(place))]
             with np.errstate(invalid="ignore"):
                 value[at] = np.where(below == above, below, below + (place % 1.0) * (above - below))
-            first, last = ranks(int(count), probability, confidence)
+            first, last = quantile_ranks(int(count), probability, confidence)
             if first >= 1:
                 low[at] = column[first - 1]
             if last <= count:

@@ -41,7 +41,7 @@ def draw(flown: Many) -> "Figure | None":
     words = "a point is a flight" if few else "flights in each bin"
     words += "; above: quantiles 5, 50 and 95 % and their 95 % bands (order statistics)"
     words += "; a triangle: flights are too few for that end"
-    required = {r.key for r in flown.scenario.requirements}
+    required = {r.key for r in flown.scenario.requirements if r.of_each_flight}
     if required & {quantity.key for quantity, _, _ in found}:
         words += "; dashed: required"
     size = (max(4.5, 3.0 * columns), 1.2 + ROW * rows)

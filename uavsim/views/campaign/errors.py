@@ -9,7 +9,7 @@ from uavsim.studies.campaign.envelopes import Envelope, envelopes
 from uavsim.studies.campaign.far import far_traces
 from uavsim.studies.campaign.flown import ERROR_STEP
 from uavsim.studies.campaign.many import Many, Mask
-from uavsim.studies.quantiles import ranks
+from uavsim.studies.quantiles import quantile_ranks
 from uavsim.views.campaign.quantities import Array
 from uavsim.views.campaign.words import flights, named, remark, title
 from uavsim.views.figure import BLACK, BLUE, GREY, ORANGE, RED, SMALL, label, legend, make_room, sheet
@@ -113,7 +113,7 @@ def _words(traces: int, rows: int, every: int) -> str:
     if traces == 1:
         return f"rms in bins of {bins} {whose}"
     words = f"rms in bins of {bins} {whose}, as long as half of them last; darker: 95 % band of each quantile"
-    needed = next(n for n in range(1, 1000) if ranks(n, QUANTILES[-1])[1] <= n)
+    needed = next(n for n in range(1, 1000) if quantile_ranks(n, QUANTILES[-1])[1] <= n)
     return words + (f" (of 5 and 95 % open outwards below {needed} flights)" if traces < needed else "")
 
 

@@ -82,7 +82,7 @@ def floor_of(sample: NDArray[np.float64]) -> float:
 def limit_lines(axes: "Axes", flown: Many, key: str, factor: float = 1.0, *, upright: bool = False) -> None:
     """Draw the scenario's bounds of a number, where they lie within the scale."""
     low, high = axes.get_xlim() if upright else axes.get_ylim()
-    for requirement in flown.scenario.requirements:
+    for requirement in (r for r in flown.scenario.requirements if r.of_each_flight):
         if requirement.key != key:
             continue
         for bound in (requirement.minimum, requirement.maximum):
