@@ -323,7 +323,7 @@ def _apply(values: dict[str, Any], override: str) -> str:
         group = group.setdefault(part, {})
         if not isinstance(group, dict):
             raise SettingError(f"--set {shown(override)}: {part} is a value, not a group")
-    value = _value(text)
+    value = value_of_text(text)
     if key == WEATHER and value in list(PRESETS):  # one that is asked for comes before what the file says of the same
         for name in PRESETS[value].keys:
             group.pop(name, None)
@@ -332,7 +332,7 @@ def _apply(values: dict[str, Any], override: str) -> str:
     return key
 
 
-def _value(text: str) -> Any:
+def value_of_text(text: str) -> Any:
     """Read a value as TOML has it; what is none is text."""
     try:
         found = parse_toml(f"value = {text}")

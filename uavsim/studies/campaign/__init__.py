@@ -1,0 +1,1 @@
+"""Many flights: campaigns, sweeps, sensitivity, verification."""
