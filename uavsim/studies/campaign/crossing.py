@@ -217,9 +217,7 @@ def _band(
     return held, lost
 
 
-def _quantiles(
-    values: Array, met: Array, wanted: float, minimum: float | None, maximum: float | None
-) -> Array | None:
+def _quantiles(values: Array, met: Array, wanted: float, minimum: float | None, maximum: float | None) -> Array | None:
     """Quantile of each cell that must not leave the bound; a flight without the number is beyond it."""
     if (minimum is None) == (maximum is None):
         return None
@@ -314,9 +312,7 @@ def _fits(good: Array, flown: Array, p: Array) -> bool:
     return bool(gammaincc(0.5 * (p.size - 2), 0.5 * float(squares.sum())) >= MISFIT)
 
 
-def _fieller(
-    a: float, b: float, covariance: Array, level: float, count: int, confidence: float
-) -> tuple[float, float]:
+def _fieller(a: float, b: float, covariance: Array, level: float, count: int, confidence: float) -> tuple[float, float]:
     """Return where a + b x may have a level; infinite where the slope may be none."""
     from scipy.special import stdtrit
 
