@@ -101,7 +101,7 @@ def summary(found: Sweep) -> dict[str, Any]:
             "flown": len(found.runs),
             "wanted": found.wanted,
             "confidence": found.confidence,
-            "vary": {one.key: one.values for one in found.varies},
+            "vary": {one.key: one.choices for one in found.varies},
             "reference": {"cell": found.reference, "nominal": found.nominal, **found.cells[found.reference]},
         }
     )
@@ -114,10 +114,10 @@ def figures(found: Sweep) -> Iterator[tuple[str, Callable[[], "Figure"]]]:
     flown = len(found.table) == len(found.cells)
     for axis, one in enumerate(found.varies):
         yield f"along-{_file(one.key)}", lambda axis=axis: draw_along(found, axis)
-        if flown and one.numeric and len(one.values) > 1:
+        if flown and one.numeric and len(one.choices) > 1:
             yield f"limits-{_file(one.key)}", lambda axis=axis: draw_limits(found, axis)
     for across, up in combinations(range(len(found.varies)), 2):
-        if not flown or min(len(found.varies[axis].values) for axis in (across, up)) < 2:
+        if not flown or min(len(found.varies[axis].choices) for axis in (across, up)) < 2:
             continue
         names = "-".join(_file(found.varies[axis].key) for axis in (across, up))
         if _moved(found, OUTCOME):
@@ -163,7 +163,7 @@ class Scale:
 
 
 def _scale(one: Varied) -> Scale:
-    if one.numeric and len(one.values) > 1:
+    if one.numeric and len(one.choices) > 1:
         numbers = np.sort(np.array(one.labels, dtype=np.float64))
         log = bool(numbers[0] > 0.0 and numbers[-1] >= LOGARITHMIC * numbers[0])
         return Scale(one.key, numbers, tuple(f"{number:.4g}" for number in numbers), True, log)
@@ -384,7 +384,7 @@ def _range(limit: Crossing, found: Sweep) -> str:
 
 def _plane(found: Sweep, across: int, up: int) -> Line:
     """Numbers of the cells over two keys, shape (values of up, values of across), others as in the reference."""
-    shape = tuple(len(one.values) for one in found.varies)
+    shape = tuple(len(one.choices) for one in found.varies)
     at = np.unravel_index(found.reference, shape)
     grid = np.arange(len(found.cells)).reshape(shape)
     chosen = grid[tuple(slice(None) if i in {across, up} else int(at[i]) for i in range(len(shape)))]

@@ -272,7 +272,7 @@ def _logistic(
     scores = np.stack([residual.sum(axis=1), residual @ inner])  # a column a flight
     count = met.shape[0]
     spread = scores @ scores.T * (count / (count - 1))
-    covariance = np.linalg.solve(information, np.linalg.solve(information, spread).T)
+    covariance = np.linalg.solve(information, np.linalg.solve(information, spread).T).astype(np.float64)
     ends = [
         _outer(x, end) if 0.0 <= end <= 1.0 else None for end in _fieller(a, b, covariance, level, count, confidence)
     ]

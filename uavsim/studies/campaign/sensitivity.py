@@ -2,9 +2,10 @@
 
 The d dispersions of a scenario are d numbers of the unit cube, u_1 … u_d, each the probability that its distribution
 gives to smaller values. One more factor, `rest`, stands for all else that a seed draws: noise, sensor units, clocks,
-the wait on the rail. Its number chooses the index under which a flight draws all that, so that two flights with the same
-`rest` share every draw but the dispersions. It is a factor like any other: its share of the variance says what no
-tighter tolerance of a dispersion can take away.
+the wait on the rail. Its number chooses the index under which a flight draws all that, so that two flights with the
+same `rest` share every draw but the dispersions. It is a factor like any other: its share of the variance says what no
+tighter tolerance of a dispersion can take away. Correlated dispersions are varied by their independent normal values,
+before they are mixed: what a factor means then depends on their order in the file.
 
 With Y the output and V its variance, all factors independent and uniform:
 
@@ -12,9 +13,9 @@ With Y the output and V its variance, all factors independent and uniform:
     total         T_i = E[V(Y | u_1 … u_d without u_i)] / V     what is left of V if all but u_i become known
     Σ S_i ≤ 1, and 1 - Σ S_i is the share of interactions; S_i ≤ T_i
 
-Sobol: N(d + 3) flights, d + 1 factors among them `rest`; Saltelli's design over a scrambled Sobol sequence, estimators of Saltelli et al.
-(Computer Physics Communications 181, 2010, 259-270), all by SALib. Intervals are the quantiles of SALib's bootstrap over
-the N base points.
+Sobol: N(d + 3) flights, d + 1 factors with `rest`; Saltelli's design over a scrambled Sobol sequence, estimators of
+Saltelli et al. (Computer Physics Communications 181, 2010, 259-270), all by SALib. Intervals are the quantiles of
+SALib's bootstrap over the N base points.
 
 Morris: r(d + 2) flights in r trajectories, each of which moves one factor after the other by half of its range
 (Technometrics 33, 1991, 161-174; SALib's sampler). An elementary effect is the change of Y over that of u. `mu_star` is
@@ -205,7 +206,7 @@ class Effects:
 def output_of(runs: "pd.DataFrame", name: str) -> Array:
     """Return an output of each flight; of the outcome 1 where it is as expected, NaN for what does not exist."""
     if name == AS_EXPECTED:
-        return (runs["outcome"] == runs["expected"]).to_numpy(np.float64)
+        return (runs["outcome"] == runs["expected"]).to_numpy().astype(np.float64)
     return runs[name].to_numpy(np.float64)
 
 
@@ -301,14 +302,20 @@ def _screened(blocks: Array, unit: Array, flown: Design, confidence: float, seed
     effects = _effects(blocks, unit)
     drawn = _generator(seed, 1).integers(len(effects), size=(RESAMPLES, len(effects)))
     columns: dict[str, Any] = {"factor": flown.names}
-    for name, measure in (
-        ("mu_star", lambda e: np.abs(e).mean(axis=-2)),
-        ("mu", lambda e: e.mean(axis=-2)),
-        ("sigma", lambda e: e.std(axis=-2, ddof=1)),
-    ):
-        low, high = _interval(measure(effects[drawn]), confidence)
-        columns |= {name: measure(effects), f"{name}_low": low, f"{name}_high": high}
+    values, resampled = _measures(effects), _measures(effects[drawn])
+    for name, value in values.items():
+        low, high = _interval(resampled[name], confidence)
+        columns |= {name: value, f"{name}_low": low, f"{name}_high": high}
     return pd.DataFrame(columns)
+
+
+def _measures(effects: Array) -> dict[str, Array]:
+    """Return Morris' measures of elementary effects, shape (…, trajectories, factors)."""
+    return {
+        "mu_star": np.abs(effects).mean(axis=-2),
+        "mu": effects.mean(axis=-2),
+        "sigma": effects.std(axis=-2, ddof=1),
+    }
 
 
 def _effects(blocks: Array, unit: Array) -> Array:

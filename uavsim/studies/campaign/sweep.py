@@ -1,14 +1,14 @@
 """A grid over assumptions: what each cell gives, how cells differ, and where each requirement breaks.
 
-Every cell flies the same flights: flight i of each has the seed and the index i (common random numbers). So a difference
-between two cells is taken flight by flight, and what the flights have in common falls out of it:
+Every cell flies the same flights: flight i of each has the seed and the index i (common random numbers). So a
+difference between two cells is taken flight by flight, and what the flights have in common falls out of it:
 var(Y_a - Y_b) = var Y_a + var Y_b - 2 cov(Y_a, Y_b). Intervals:
 
 share of flights as expected          Clopper-Pearson (`uavsim.studies.intervals`)
 quantiles                             order statistics (`uavsim.studies.quantiles`)
 mean of paired differences            Student's t with n - 1 degrees of freedom
-difference of paired shares           Bonett and Price (Psychometrika 77, 2012, 569-584): one is added to each of the two
-                                      counts of pairs that differ, then the normal interval
+difference of paired shares           Bonett and Price (J. Educational and Behavioral Statistics 37, 2012, 479-488): one is
+                                      added to each of the two counts of pairs that differ, then the normal interval
 where a requirement breaks            `uavsim.studies.campaign.crossing`
 """
 
@@ -93,7 +93,7 @@ class Sweep:
     @cached_property
     def labels(self) -> "list[dict[str, Any]]":
         """What tables show of each cell: `vary.KEY` and its label."""
-        shown = [dict(zip(map(_hashed, one.values), one.labels, strict=True)) for one in self.varies]
+        shown = [dict(zip(map(_hashed, one.choices), one.labels, strict=True)) for one in self.varies]
         return [
             {f"vary.{one.key}": named[_hashed(cell[one.key])] for one, named in zip(self.varies, shown, strict=True)}
             for cell in self.cells
@@ -104,8 +104,8 @@ class Sweep:
         return self._spread(self.runs[key].to_numpy(np.float64))
 
     def expected(self) -> Array:
-        """Return 1 where the outcome is as expected, 0 where not, NaN where it was not flown; shape (cells, flights)."""
-        return self._spread((self.runs["outcome"] == self.runs["expected"]).to_numpy(np.float64))
+        """Return 1 where the outcome is as expected, 0 where not, NaN where not flown; shape (cells, flights)."""
+        return self._spread((self.runs["outcome"] == self.runs["expected"]).to_numpy().astype(np.float64))
 
     def alike(self, key: str) -> bool:
         """Whether a number of the score, or `outcome`, is the same in all cells, flight by flight."""
@@ -197,7 +197,7 @@ class Sweep:
 
     def _limits(self, judged: "Judged") -> Iterator[dict[str, Any]]:
         for axis, one in enumerate(self.varies):
-            if not one.numeric or len(one.values) < 2:
+            if not one.numeric or len(one.choices) < 2:
                 continue
             for line in self.lines(axis):
                 for found in self.limits_along(axis, line, judged):
@@ -212,7 +212,7 @@ class Sweep:
 
     def lines(self, axis: int) -> Iterator[NDArray[np.int_]]:
         """Yield the numbers of the cells in which a key changes and all others stay, by rising value of the key."""
-        shape = tuple(len(one.values) for one in self.varies)
+        shape = tuple(len(one.choices) for one in self.varies)
         grid = np.moveaxis(np.arange(len(self.cells)).reshape(shape), axis, -1)
         order = np.argsort(self.varies[axis].labels) if self.varies[axis].numeric else np.arange(shape[axis])
         yield from grid.reshape(-1, shape[axis])[:, order]
@@ -230,7 +230,7 @@ class Sweep:
             self.wanted,
             own=float(own) if isinstance(own, int | float) else None,
             confidence=self.confidence,
-            values=None if judged.values is None else judged.values[line].T,
+            values=None if judged.numbers is None else judged.numbers[line].T,
             minimum=judged.minimum,
             maximum=judged.maximum,
         )
@@ -242,7 +242,7 @@ class Judged:
 
     name: str
     met: Array
-    values: Array | None = None
+    numbers: Array | None = None
     minimum: float | None = None
     maximum: float | None = None
 

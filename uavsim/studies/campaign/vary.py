@@ -20,8 +20,7 @@ from typing import Any
 from sensors.choice import shown
 from uavsim import settings
 from uavsim.plants.air.weather import PRESETS
-from uavsim.scenario import OPTIONS, PROPERTIES, WEATHER, Scenario, keys, with_kinds
-from uavsim.scenario import value_of_text as value_of
+from uavsim.scenario import OPTIONS, PROPERTIES, WEATHER, Scenario, keys, value_of_text, with_kinds
 
 MOST_CELLS = 1000
 KINDS = ("detector.kind", "estimator.kind", "plant.kind")
@@ -44,26 +43,31 @@ class Varied:
     ----------
     key
         Of the scenario, joined by dots.
-    values
+    choices
         Plain values, as TOML has them.
     """
 
     key: str
-    values: tuple[Any, ...]
+    choices: tuple[Any, ...]
 
     @property
     def numeric(self) -> bool:
         """Whether all values are numbers, so that there is a line from one to the next."""
-        return all(_is_number(value) for value in self.values)
+        return all(_is_number(value) for value in self.choices)
 
     @property
     def labels(self) -> tuple[Any, ...]:
-        """What a table's column `vary.KEY` holds: numbers, true and false as they are, all others as text."""
-        if self.numeric:
-            return tuple(float(value) for value in self.values)
-        if all(isinstance(value, bool) for value in self.values):
-            return self.values
-        return tuple(as_text(value) for value in self.values)
+        """What a table's column `vary.KEY` holds of each."""
+        return labels(self.choices)
+
+
+def labels(values: Sequence[Any]) -> tuple[Any, ...]:
+    """Return values as one column of a table can hold them: numbers, true and false as they are, all others as text."""
+    if all(_is_number(value) for value in values):
+        return tuple(float(value) for value in values)
+    if all(isinstance(value, bool) for value in values):
+        return tuple(values)
+    return tuple(as_text(value) for value in values)
 
 
 def as_text(value: Any) -> str:
@@ -98,7 +102,7 @@ def varied(scenario: Scenario, key: str, values: Iterable[Any]) -> Varied:
     """
     _check_key(key)
     if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
-        raise ValueError(f"{key}: give a list of values, not {shown(values)}")
+        raise ValueError(f"{key}: give a list of values, not {shown(values)}")  # noqa: TRY004 (the user's)
     found = tuple(_whole(key, _plain(value)) for value in values)
     if not found:
         raise ValueError(f"{key}: there is no value in it")
@@ -123,11 +127,11 @@ def cells(scenario: Scenario, varies: Sequence[Varied], most: int = MOST_CELLS) 
     for i, name in enumerate(names):
         if name in names[:i]:
             raise ValueError(f"{name} is varied twice")
-    count = math.prod(len(one.values) for one in varies)
+    count = math.prod(len(one.choices) for one in varies)
     if count > most:
-        sizes = " × ".join(str(len(one.values)) for one in varies)
+        sizes = " × ".join(str(len(one.choices)) for one in varies)
         raise ValueError(f"{sizes} = {count} cells; {most} are the most")
-    found = tuple(dict(zip(names, values, strict=True)) for values in product(*(one.values for one in varies)))
+    found = tuple(dict(zip(names, values, strict=True)) for values in product(*(one.choices for one in varies)))
     for i, cell in enumerate(found):
         applied(scenario, cell, f"cell {i + 1} of {count} ({told(cell)})")
     return found
@@ -157,9 +161,7 @@ def applied(scenario: Scenario, cell: Cell, where: str = "") -> Scenario:
     chosen = {key.partition(".")[0]: cell[key] for key in KINDS if key in cell}
     try:
         for what, kind in chosen.items():
-            if not isinstance(kind, str):
-                raise ValueError(f"{what}.kind = {shown(kind)}: must be text")
-            scenario = with_kinds(scenario, **{what: kind})
+            scenario = with_kinds(scenario, **{what: as_text(kind)})
     except ValueError as error:
         raise ValueError(head + str(error).removeprefix(f"{scenario.name}: ")) from None
     values = scenario.to_dict()
@@ -262,7 +264,7 @@ def _listed(key: str, text: str, own: Any) -> list[Any]:
             raise ValueError(f"{key}={text}: all values are factors, such as 0.5x, or none is")
         return [_multiplied(key, own, float(factor[1])) for factor in factors if factor]
     is_text = not key.startswith((PROPERTIES, *OPTIONS)) and settings.hint_of(Scenario, key) is str
-    found = [value_of(part) for part in parts]
+    found = [value_of_text(part) for part in parts]
     return [part if is_text and not isinstance(value, str) else value for part, value in zip(parts, found, strict=True)]
 
 
