@@ -20,7 +20,7 @@ from uavsim.studies.campaign.sensitivity import LEAST_BASES, REST, Design, Effec
 from uavsim.views.documents import plain, rows
 from uavsim.views.figure import BLACK, BLUE, DARK, GREY, ORANGE, RED, SMALL, label, legend, literal, sheet
 from uavsim.views.figure import save as save_figure
-from uavsim.views.sweep import named, with_unit
+from uavsim.views.sweeping.shared import named, with_unit
 from uavsim.views.terminal import _console, _print, _table, words
 from uavsim.views.text import cut
 
@@ -65,8 +65,8 @@ def remark(design: Design) -> str:
     if design.method == "sobol":
         return f"Sobol indices from {design.bases} base points, {flown} flights of {d} dispersions and the rest{rest}"
     return (
-        f"Morris screening only, {design.bases} trajectories, {flown} flights{rest}; Sobol indices of {d} dispersions and "
-        f"the rest need {flights_for(d, 'sobol')} flights ({LEAST_BASES} base points)"
+        f"Morris screening only, {design.bases} trajectories, {flown} flights{rest}; Sobol indices of {d} dispersions "
+        f"and the rest need {flights_for(d, 'sobol')} flights ({LEAST_BASES} base points)"
     )
 
 
@@ -244,7 +244,7 @@ def draw_screening(found: Study) -> "Figure":
     words_ = "on the right: matters; high up: interacts or bends"
     figure, panels = _panels(found, "screening", words_, wide=False)
     for panel, one in panels:
-        _, unit, factor = named(one.output)
+        factor = named(one.output)[2]
         x, low, high, y = (
             factor * one.rows[name].to_numpy(float) for name in ("mu_star", "mu_star_low", "mu_star_high", "sigma")
         )

@@ -7,8 +7,8 @@ var(Y_a - Y_b) = var Y_a + var Y_b - 2 cov(Y_a, Y_b). Intervals:
 share of flights as expected          Clopper-Pearson (`uavsim.studies.intervals`)
 quantiles                             order statistics (`uavsim.studies.quantiles`)
 mean of paired differences            Student's t with n - 1 degrees of freedom
-difference of paired shares           Bonett and Price (J. Educational and Behavioral Statistics 37, 2012, 479-488): one is
-                                      added to each of the two counts of pairs that differ, then the normal interval
+difference of paired shares           Bonett and Price (J. Educational and Behavioral Statistics 37, 2012, 479-488):
+                                      the two counts of pairs that differ, each with one more; then the normal interval
 where a requirement breaks            `uavsim.studies.campaign.crossing`
 """
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from uavsim.studies.campaign.crossing import fewest
 from uavsim.studies.campaign.sweep import OUTCOME, QUANTILES, Sweep
 from uavsim.studies.campaign.vary import as_text, told
-from uavsim.views.sweep import named
+from uavsim.views.sweeping.shared import named
 from uavsim.views.terminal import _console, _print, _table, _with_band, words
 from uavsim.views.text import cut
 
