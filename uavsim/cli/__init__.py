@@ -18,14 +18,16 @@ from uavsim.cli.printed import alone
 from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
+from uavsim.cli.sensitivity import sensitivity
 from uavsim.cli.sensors import sensors
 from uavsim.cli.survey import survey
+from uavsim.cli.sweep import sweep
 from uavsim.cli.tune import tune
 from uavsim.failure import PartError
 from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
-COMMANDS = (scenarios, fly, campaign, replay, sensors, roc, tune, survey, paper, plugins, bench)
+COMMANDS = (scenarios, fly, campaign, sweep, sensitivity, replay, sensors, roc, tune, survey, paper, plugins, bench)
 """In the order of the help."""
 
 

@@ -210,6 +210,29 @@ def output_of(runs: "pd.DataFrame", name: str) -> Array:
     return runs[name].to_numpy(np.float64)
 
 
+def effects_of(runs: "pd.DataFrame", flown: Design, outputs: Sequence[str], seed: int) -> tuple[Effects, ...]:
+    """Estimate what each factor does to each of several outputs.
+
+    Parameters
+    ----------
+    runs
+        A row a flight; `index` is its place in the design. A flight that has no row has no output.
+    flown
+        The design.
+    outputs
+        Keys of the score, or `outcome`.
+    seed
+        Of the bootstrap.
+    """
+    found = []
+    for name in outputs:
+        values = np.full(len(flown.unit), np.nan)
+        if name == AS_EXPECTED or name in runs:
+            values[runs["index"].to_numpy(int)] = output_of(runs, name)
+        found.append(analyse(values, flown, name, seed=seed))
+    return tuple(found)
+
+
 def analyse(values: Array, flown: Design, output: str = "", *, confidence: float = 0.95, seed: int = 0) -> Effects:
     """Estimate what each factor does to an output, with intervals.
 
@@ -241,7 +264,7 @@ def analyse(values: Array, flown: Design, output: str = "", *, confidence: float
     if left_out > LEFT_OUT * flown.bases:
         what = "base points" if flown.method == "sobol" else "trajectories"
         why = f"{missing} flights lack it, in {left_out} of {flown.bases} {what}; {100 * LEFT_OUT:g} % are the most"
-    elif np.ptp(there) <= 1e-12 * max(abs(mean), 1e-300):
+    elif there.size and np.ptp(there) <= 1e-12 * max(abs(mean), 1e-300):
         why = "it is the same in every flight"
     elif whole.sum() < 2:
         why = "there are too few flights"

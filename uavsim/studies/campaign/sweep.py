@@ -12,22 +12,27 @@ difference of paired shares           Bonett and Price (J. Educational and Behav
 where a requirement breaks            `uavsim.studies.campaign.crossing`
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.scenario import Requirement, Scenario
+from uavsim.folders import Place
+from uavsim.scenario import Requirement, Scenario, load_scenario
 from uavsim.studies.campaign.crossing import Crossing, crossings
-from uavsim.studies.campaign.vary import Cell, Varied, own_values
+from uavsim.studies.campaign.vary import Cell, Varied, cells, own_values, parse, varied
 from uavsim.studies.intervals import share_interval
 from uavsim.studies.quantiles import quantile_band
 
 if TYPE_CHECKING:
     import pandas as pd
+    from distributed import Client
 
 Array = NDArray[np.float64]
 
@@ -323,3 +328,79 @@ def of(
     """Return a sweep of rows that were flown, sorted by their index."""
     ordered = runs.sort_values("index", ignore_index=True)
     return Sweep(scenario, tuple(varies), tuple(cells), flights, ordered, wanted, confidence)
+
+
+def sweep(
+    scenario: Scenario | str | Path,
+    vary: Mapping[str, Iterable[Any] | str],
+    *,
+    runs: int,
+    seed: int | None = None,
+    wanted: float = WANTED,
+    confidence: float = CONFIDENCE,
+    workers: int | None = None,
+    client: "Client | None" = None,
+    out: str | Path | None = None,
+) -> Sweep:
+    """Fly a scenario over a grid of assumptions, the same flights in every cell.
+
+    Parameters
+    ----------
+    scenario
+        Or what `load_scenario` takes.
+    vary
+        Values of each key, or as a text what `--vary` takes: "0.5x,1x,2x".
+    runs
+        Flights in each cell.
+    seed
+        In place of the scenario's.
+    wanted
+        Probability with which a requirement shall be met.
+    confidence
+        Of all intervals.
+    workers
+        Processes of this machine; None: one a processor; 0: this one.
+    client
+        A `distributed.Client` of your own in their place.
+    out
+        Folder for the rows, empty or not there; without it they are only returned.
+
+    Returns
+    -------
+    Sweep
+        With `runs`, `table`, `differences`, `limits`.
+
+    Raises
+    ------
+    ValueError
+        One line: a key or a value that cannot be, and in which cell; flights that could not be flown.
+    """
+    from uavsim.studies.campaign.campaign import fly_plan
+    from uavsim.studies.campaign.keep import keep_of
+    from uavsim.studies.campaign.plan import Cells
+    from uavsim.studies.campaign.record import Record
+    from uavsim.studies.engine import engine
+
+    if runs < 1:
+        raise ValueError(f"runs = {runs}: must be at least 1")
+    if not isinstance(scenario, Scenario):
+        scenario = load_scenario(scenario)
+    if seed is not None:
+        scenario = scenario.with_seed(seed)
+    varies = [
+        parse(scenario, f"{key}={values}") if isinstance(values, str) else varied(scenario, key, values)
+        for key, values in vary.items()
+    ]
+    grid = cells(scenario, varies)
+    with ExitStack() as stack:
+        if out is None:
+            folder = Path(stack.enter_context(TemporaryDirectory(prefix="uavsim-sweep-")))
+        else:
+            folder = stack.enter_context(Place(Path(out), overwrite=False).claim()).folder
+        plan, rule = Cells(scenario, grid, runs), keep_of("none", ())
+        crew = stack.enter_context(engine(workers=workers, client=client))
+        flights = fly_plan(Record(folder, plan, keep=str(rule)), crew, rule)
+        if flights.left:
+            first = flights.left[0]
+            raise ValueError(f"{len(flights.left)} flights could not be flown; index {first.position}: {first.why}")
+        return of(scenario, varies, grid, runs, flights.runs, wanted=wanted, confidence=confidence)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.studies.campaign.sweep import Sweep
+from uavsim.studies.campaign.sweep import OUTCOME, Sweep
 from uavsim.views.figure import DARK, GREY, RED, SMALL, label, legend, literal, sheet
 from uavsim.views.sweeping.shared import alike, beside, flights, moved, named, scale_of, series, title, with_unit
 
@@ -20,15 +20,15 @@ Line = NDArray[np.int_]
 
 def draw_along(found: Sweep, axis: int) -> "Figure":
     """Draw the share of flights as expected and quantiles against a key."""
-    lines, scale, quantities = series(found, axis), scale_of(found.varies[axis]), moved(found)
+    lines, scale, quantities = series(found, axis), scale_of(found.varies[axis]), moved(found, OUTCOME) or (OUTCOME,)
     hidden = () if len(lines) > 1 else tuple(i for i in range(len(found.varies)) if i != axis)
     others = beside(found, tuple(i for i in range(len(found.varies)) if i not in hidden))
     words = "95 % bands, each point on its own"
     figure, axes = sheet(
         title(found, f"against {found.varies[axis].key}"),
         f"{flights(found)}{others}{alike(found)}; {words}",
-        (1.0,) * (1 + len(quantities)),
-        size=(10.5, 1.6 + 2.3 * (1 + len(quantities))),
+        (1.0,) * len(quantities),
+        size=(10.5, 1.6 + 2.3 * len(quantities)),
         right=2.4,
         gap=(0.18, 0.0),
     )
@@ -38,11 +38,12 @@ def draw_along(found: Sweep, axis: int) -> "Figure":
         cells, x = table.loc[line[there]], scale.places[there]
         if not scale.numeric and len(lines) > 1:
             x = x + 0.12 * (i - 0.5 * (len(lines) - 1))
-        _draw_share(axes[0][0], x, cells, colour, name, joined=scale.numeric)
-        for (panel,), key in zip(axes[1:], quantities, strict=True):
-            _draw_quantiles(panel, x, cells, key, colour, name, joined=scale.numeric, whole=len(lines) == 1)
-    label(axes[0][0], "as expected, %")
-    for (panel,), key in zip(axes[1:], quantities, strict=True):
+        for (panel,), key in zip(axes, quantities, strict=True):
+            if key == OUTCOME:
+                _draw_share(panel, x, cells, colour, name, joined=scale.numeric)
+            else:
+                _draw_quantiles(panel, x, cells, key, colour, name, joined=scale.numeric, whole=len(lines) == 1)
+    for (panel,), key in zip(axes, quantities, strict=True):
         label(panel, with_unit(key))
     for (panel,) in axes:
         scale.dress(panel)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from uavsim.studies.campaign.sweep import OUTCOME, Sweep
 from uavsim.studies.campaign.vary import told
 from uavsim.views.figure import BLUE, GREY, LIGHT, label, literal, sheet
-from uavsim.views.sweeping.shared import alike, moved, named, short, title, value_text, with_unit
+from uavsim.views.sweeping.shared import alike, brief_key, moved, named, short, title, value_text, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,4 +64,4 @@ def draw_differences(found: Sweep) -> "Figure":
 
 def _brief(found: Sweep, i: int) -> str:
     """Name a cell by the last parts of its keys."""
-    return ", ".join(f"{key.rpartition('.')[2]} {value_text(value)}" for key, value in found.cells[i].items())
+    return ", ".join(f"{brief_key(found, key)} {value_text(value)}" for key, value in found.cells[i].items())

@@ -24,7 +24,8 @@ def draw_limit_map(found: Sweep, across: int, up: int) -> "Figure":
     judged = judged_over(found, across, up)
     columns = 2 if len(judged) > 1 else 1
     height = -(-len(judged) // columns)
-    words = f"share of flights that meet it, %; red: where it crosses {100.0 * found.wanted:g} %, with its 95 % band"
+    line = f"red: where it crosses {100.0 * found.wanted:g} %, with its 95 % band, line by line"
+    words = f"share of flights that meet it, %; {line}"
     figure, axes = sheet(
         title(found, "how much can be afforded of two things at once"),
         f"{flights(found)}{beside(found, (across, up))}; {words}; hatched: shown neither good nor bad",
@@ -40,7 +41,7 @@ def draw_limit_map(found: Sweep, across: int, up: int) -> "Figure":
     for panel, one in zip(panels, judged, strict=False):
         met = one.met[plane]
         with np.errstate(invalid="ignore"):
-            draw_tiles(panel, 100.0 * np.nanmean(met, axis=2), found, across, up, "cividis", (0.0, 100.0))
+            draw_tiles(panel, 100.0 * np.nanmean(met, axis=2), found, across, up, "cividis", (0.0, 100.0), lift=0.3)
         _hatch(panel, met, found)
         remark = _draw_contour(panel, found, across, up, plane, one)
         panel.set_title(literal(one.name) + remark, loc="left", fontsize=SMALL + 1.0)

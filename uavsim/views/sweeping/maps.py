@@ -27,8 +27,10 @@ def draw_tiles(
     up: int,
     colours: str,
     ends: tuple[float | None, float | None],
+    *,
+    lift: float = 0.0,
 ) -> None:
-    """Draw numbers as tiles of one size, whatever the values of the keys are."""
+    """Draw numbers as tiles of one size, whatever the values of the keys are; `lift`: of what is written above."""
     image = axes.imshow(values, origin="lower", aspect="auto", cmap=colours, vmin=ends[0], vmax=ends[1])
     for axis, set_ticks in ((across, axes.set_xticks), (up, axes.set_yticks)):
         ticks = scale_of(found.varies[axis]).ticks
@@ -46,7 +48,7 @@ def draw_tiles(
             dark = float(np.mean(image.cmap(float(np.asarray(shade(np.array(value)))))[:3])) < 0.5
             axes.text(
                 column,
-                row,
+                row + lift,
                 f"{value:.3g}",
                 ha="center",
                 va="center",

@@ -102,9 +102,19 @@ def series(found: Sweep, axis: int) -> list[tuple[str, str, Line]]:
         return [("", BLUE, line_of(found, axis))]
     key = others[0].key
     return [
-        (f"{key.rpartition('.')[2]} {value_text(found.labels[line[0]][f'vary.{key}'])}", colour, line)
+        (f"{brief_key(found, key)} {value_text(found.labels[line[0]][f'vary.{key}'])}", colour, line)
         for line, colour in zip(lines, COLOURS, strict=False)
     ]
+
+
+def brief_key(found: Sweep, key: str) -> str:
+    """Return as many of the last parts of a key as tell it from the other ones that are varied."""
+    parts = key.split(".")
+    others = [one.key.split(".") for one in found.varies if one.key != key]
+    for count in range(1, len(parts)):
+        if all(other[-count:] != parts[-count:] for other in others):
+            return ".".join(parts[-count:])
+    return key
 
 
 def value_text(value: Any) -> str:
@@ -124,7 +134,7 @@ def moved(found: Sweep, *first: str) -> tuple[str, ...]:
 
 def alike(found: Sweep) -> str:
     """Say which numbers of the score are the same in all cells, and so are not drawn."""
-    same = [named(key)[0] for key in found.quantities if found.alike(key)]
+    same = [named(key)[0] for key in (OUTCOME, *found.quantities) if found.alike(key)]
     return f"; the same in every cell: {', '.join(same)}" if same else ""
 
 
