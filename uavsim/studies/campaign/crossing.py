@@ -110,7 +110,7 @@ def crossings(
     wanted
         Probability, 0 … 1 exclusive.
     own
-        The scenario's own value: of cells with the same share the nearest to it is the start.
+        The scenario's own value: the cell nearest to it is the start if it is good, and of equally good ones else.
     confidence
         Of band and interval; each tail has half of what is left.
     values, minimum, maximum
@@ -134,7 +134,7 @@ def crossings(
     if not 0.0 < wanted < 1.0 or not 0.0 < confidence < 1.0:
         raise ValueError("probabilities must lie between 0 and 1")
     good = np.nansum(met, axis=0)
-    start = _start(x, good / flown, own)
+    start = _start(x, good / flown, wanted, own)
     direct = None if values is None else _quantiles(values, met, wanted, minimum, maximum)
     found = []
     for rising in (True, False):
@@ -149,12 +149,14 @@ def crossings(
     return tuple(found)
 
 
-def _start(x: Array, share: Array, own: float | None) -> int:
-    """Cell that limits are sought from: the greatest share, then the nearest to the scenario's own value."""
+def _start(x: Array, share: Array, wanted: float, own: float | None) -> int:
+    """Cell that limits are sought from: the scenario's own value where that is good, else one of the best share."""
+    if own is not None:
+        nearest = int(np.argmin(np.abs(x - own)))
+        if share[nearest] >= wanted:
+            return nearest
     best = np.flatnonzero(share == share.max())
-    if own is None:
-        return int(best[best.size // 2] if best.size < x.size else 0)
-    return int(best[np.argmin(np.abs(x[best] - own))])
+    return int(best[0] if own is None else best[np.argmin(np.abs(x[best] - own))])
 
 
 # -- without a model -------------------------------------------------------------------------------------------------
