@@ -274,16 +274,17 @@ def draw_screening(found: Study) -> "Figure":
 def print_study(found: Study) -> None:
     """Print what drives each output: a line a factor, the greatest first; within 80 columns."""
     console = _console()
-    _print(
-        console, words("\n", (found.scenario.name, "bold"), f", seed {found.scenario.seed}: "), remark(found.design), ""
-    )
+    _print(console, words("\n", (found.scenario.name, "bold"), f", seed {found.scenario.seed}\n"))
+    console.print(remark(found.design))
+    console.print()
     columns = ("first order", "total", "swing") if found.design.method == "sobol" else ("mean size", "spread", "swing")
     for one in found.effects:
         name, unit, factor = named(one.output)
         if one.why:
-            _print(console, f"{name}: no numbers: {one.why}", "")
+            console.print(f"{name}: no numbers: {one.why}\n")
             continue
-        left = f"; {one.missing} flights have none, {one.left_out} blocks are left out" if one.missing else ""
+        blocks = "base points" if found.design.method == "sobol" else "trajectories"
+        left = f"; {one.missing} flights have none, {one.left_out} {blocks} are left out" if one.missing else ""
         table = _table((f"{name}, {unit}" if unit else name, *columns))
         keys = ("first", "total", "swing") if found.design.method == "sobol" else ("mu_star", "sigma", "swing")
         for _, row in one.rows.sort_values(keys[1] if keys[1] == "total" else keys[0], ascending=False).iterrows():

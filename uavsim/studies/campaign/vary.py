@@ -187,9 +187,10 @@ def _check_key(key: str) -> None:
 
 
 def _check_dispersed(scenario: Scenario, key: str) -> None:
-    """Refuse a key whose value a dispersion would draw over; a factor on it goes with every value."""
+    """Refuse a key whose value a dispersion draws over; one around the key's own value goes with what is varied."""
     for one in getattr(scenario, "dispersions", ()):
-        if one.key == key and not getattr(one, "relative", False):
+        around = one.relative or ("normal" in one.distribution and one.mean is None)
+        if one.key.partition("[")[0] == key and not around:
             raise ValueError(
                 f"{key}: is drawn anew for each flight by a dispersion of {scenario.name}, which would hide what is "
                 "varied; take the dispersion out, or make it relative = true"

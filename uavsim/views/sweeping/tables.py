@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Any
 from uavsim.studies.campaign.crossing import fewest
 from uavsim.studies.campaign.sweep import OUTCOME, QUANTILES, Sweep
 from uavsim.studies.campaign.vary import as_text, told
-from uavsim.views.sweeping.shared import named
+from uavsim.views.sweeping.shared import named, short
 from uavsim.views.terminal import _console, _print, _table, _with_band, words
-from uavsim.views.text import cut
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -109,7 +108,7 @@ def _print_limits(console: Any, found: Sweep) -> None:
     table = _table((f"met by {100 * found.wanted:g} %", "estimate", "band", "quantile"))
     for name, rows in limits.groupby("requirement", sort=False):
         states = set(rows["state"])
-        shown = cut(str(name), 40)
+        shown = short(str(name), 40)
         if len(states) == 1 and "breaks" not in states:
             row = rows.iloc[0]
             held = _band(row) if len(rows) == 1 else ""
@@ -124,9 +123,7 @@ def _print_limits(console: Any, found: Sweep) -> None:
     _print(console, "How much can be afforded\n", table, "")
     least = fewest(found.wanted, found.confidence)
     if int(found.table["flights"].max()) < least:
-        _print(
-            console, f"A cell is shown to be good by {least} flights that all are; with fewer a band stays open.", ""
-        )
+        console.print(f"A cell is shown to be good by {least} flights that all are; with fewer a band stays open.\n")
 
 
 def _where(found: Sweep, row: "pd.Series[Any]") -> str:
@@ -152,7 +149,7 @@ def _print_differences(console: Any, found: Sweep) -> None:
     if len(found.table) < 2 or not keys:
         return
     what = "the scenario as it is" if found.nominal else told(found.cells[found.reference])
-    _print(console, f"Less {cut(what, 60)} (*), flight by flight\n")
+    console.print(f"Less {short(what, 200)} (*), flight by flight\n")
     for key in keys:
         name, unit, factor = named(key)
         bounds = f"{100 * found.confidence:g} % bounds"
