@@ -68,7 +68,7 @@ def campaign(
     insecure: Insecure = False,
     as_json: Json = False,
 ) -> None:
-    """Fly a scenario many times, each flight with its own draws, and say how all of them ended.
+    """Fly a scenario many times, each flight with draws of its own.
 
     Example: uavsim campaign dispersed --runs 1000 --out output/dispersed-1000
 

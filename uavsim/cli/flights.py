@@ -11,6 +11,7 @@ import typer
 
 from uavsim.cli.common import (
     LARGEST_SEED,
+    UNEXPECTED,
     Bar,
     Interrupted,
     WrongInputError,
@@ -166,7 +167,7 @@ def flown(
     """Fly what is missing; an interrupt is told with how to go on."""
     from uavsim.studies.campaign.campaign import fly_plan
 
-    name, size = record.plan.scenario.name, record.plan.size
+    name, before = record.plan.scenario.name, record.finished
     try:
         with Watch(name) as progress:
             if crew is not None:
@@ -176,9 +177,16 @@ def flown(
     except KeyboardInterrupt:
         if not record.finished:
             raise
-        raise Interrupted(
-            f"{record.finished} of {size} flights are kept; go on with the same command and --resume"
-        ) from None
+        raise Interrupted(_kept(record)) from None
+    except WrongInputError as error:
+        if record.finished == before:
+            raise
+        typer.echo(f"Error: {visible(str(error))}; {_kept(record)}", err=True)
+        raise typer.Exit(UNEXPECTED) from None
+
+
+def _kept(record: "Record") -> str:
+    return f"{record.finished} of {record.plan.size} flights are kept; go on with the same command and --resume"
 
 
 def say_unfinished(flights: "Flights", *, end: bool = True) -> None:

@@ -88,7 +88,7 @@ def fly_seeds(
     """
     import pandas as pd
 
-    plan = Seeds(scenario, tuple(seeds))
+    plan = Seeds(scenario.checked(), tuple(seeds))
     started = time.monotonic()
     done: dict[int, Flown] = {}
     lost: tuple[int, ...] = ()

@@ -3,6 +3,7 @@
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -164,19 +165,21 @@ def fly_plan(
         if progress is not None:
             progress(record.finished, plan.size, outcomes)
 
-    left: list[Left] = []
+    def describe(left: Sequence[Left]) -> tuple[bool, float]:
+        complete, spent = record.finished == plan.size, time.monotonic() - started
+        record.describe(complete=complete, wall_time=spent, left=left)
+        return complete, spent
+
     try:
-        left = [
-            Left(wanted[one.position], one.why)
-            for one in crew.each(partial(fly_position, plan, keep, limit), wanted, done=done, limit=limit)
-        ]
+        not_done = crew.each(partial(fly_position, plan, keep, limit), wanted, done=done, limit=limit)
+        left = [Left(wanted[one.position], one.why) for one in not_done]
         if keep.later and record.finished == plan.size:
             _keep_later(record, crew, keep, limit)
-    finally:
-        complete = record.finished == plan.size
-        spent = time.monotonic() - started
-        record.describe(complete=complete, wall_time=spent, left=left)
-    return Flights(record.folder, plan, tuple(left), complete, spent)
+    except BaseException:
+        with suppress(OSError):  # what ended it says more
+            describe(())
+        raise
+    return Flights(record.folder, plan, tuple(left), *describe(left))
 
 
 def _keep_later(record: Record, crew: Crew, keep: Keep, limit: float) -> None:
