@@ -337,7 +337,7 @@ def _apply(values: dict[str, Any], override: str) -> str:
     declared = not key.startswith((PROPERTIES, *OPTIONS))  # JSBSim's names hold slashes and may hold dots
     if declared and key not in keys():
         raise ValueError(f"--set: {settings.unknown(Scenario, key).problem}")
-    value = _value(text)
+    value = value_of_text(text)
     is_text = declared and settings.hint_of(Scenario, key) is str
     _set(values, key, text if is_text and not isinstance(value, str) else value)
     return key
@@ -358,7 +358,7 @@ def _set(values: dict[str, Any], key: str, value: Any) -> None:
     group[last] = value
 
 
-def _value(text: str) -> Any:
+def value_of_text(text: str) -> Any:
     """Read a value as TOML has it; what is none is text."""
     try:
         found = parse_toml(f"value = {text}")

@@ -9,7 +9,7 @@ from rich.text import Text
 from uavsim.consistency import mean_band
 from uavsim.studies.batch import Batch
 from uavsim.studies.campaign.many import Many, many
-from uavsim.views.campaign.quantities import SHOWN, Quantity, number
+from uavsim.views.campaign.quantities import SHOWN, number
 from uavsim.views.campaign.summary import summary
 from uavsim.views.campaign.words import flights
 from uavsim.views.campaign.worst import LISTED
@@ -96,16 +96,16 @@ def _quantile_table(quantiles: dict[str, Any]) -> Table:
         if quantity.key not in quantiles:
             continue
         found = quantiles[quantity.key]
-        cells = (_with_band(found[name], quantity) for name in QUANTILES.values())
+        cells = (with_band(found[name], quantity.factor, quantity.digits) for name in QUANTILES.values())
         ends = (number(quantity.factor * found[name], quantity.digits) for name in ("least", "greatest"))
         table.add_row(quantity.heading, *cells, "\n".join(ends))
     return table
 
 
-def _with_band(quantile: dict[str, float | None], quantity: Quantity) -> Text:
+def with_band(quantile: dict[str, float | None], factor: float, digits: int) -> Text:
     """Return a quantile above its band, which few flights leave open on a side."""
     value, low, high = (
-        None if one is None else number(quantity.factor * one, quantity.digits)
+        None if one is None else number(factor * one, digits)
         for one in (quantile["value"], quantile["low"], quantile["high"])
     )
     band = f"{low}…{high}" if low and high else f"≥ {low}" if low else f"≤ {high}" if high else "–"
