@@ -43,7 +43,9 @@ FARTHEST = 400  # samples of push after which a detector that has not recognised
 FREQUENT = 0.15  # largest share of samples within an excursion; the base is the farthest distance that keeps it
 GATE = 0.5  # σ; outside excursions the distance is looked at after samples above the mean by as much
 KEPT = 20_000  # most states kept at a level; of more, a uniform draw
-PILOT_TRIALS = 400  # at each distance
+PILOT_TRIALS = 100  # at each distance
+PILOT_SHARE = 0.05  # of the budget, for the pilot's whole sequences
+LEAST_TRIALS = 10  # at each distance of a run
 VISITED = 1000  # samples of a sequence that are looked at to measure distances
 EASY = 0.8  # –, share of trials above which a distance is left out
 STEP = 1.2  # –, of the distance; it is the logarithm of a chance
@@ -339,13 +341,17 @@ class Splitter:
         self._detector = loop.p, loop.q, *state
         self._signal = watch.mean, float(watch.sigma), float(watch.rate), float(watch.mean.mean()), float(watch.push)
 
-    def plan(self, seed: np.random.SeedSequence, budget: float) -> tuple[Plan, float]:
-        """Fix base and trials by a pilot, so that a run takes about `budget` sequences; return the pilot's work too."""
+    def plan(self, seed: np.random.SeedSequence, budget: float, runs: int) -> tuple[Plan, float]:
+        """Fix by a pilot what each run does, so that all take about `budget` sequences with the pilot; return its work.
+
+        The pilot measures distances in one sequence and goes down once, with few trials. What it leaves is shared so
+        that the variance is least: trials ∝ √((1 - p)/(p·cost)).
+        """
         rng = np.random.default_rng(seed)
-        base, most, table, work = self._measure(rng, budget)
+        base, most, table, work = self._measure(rng)
         n = self.watch.mean.size
-        paths = max(1, int(0.15 * budget / (1.0 + 0.3 * most)))
         every = tuple(range(base - 1, -1, -1))
+        paths = max(1, int(PILOT_SHARE * budget / (1.0 + most)))
         pilot, costs = self._run(rng, Plan(base, most, table, paths, every, (PILOT_TRIALS,) * base))
         work += pilot.work
         shares = np.array([*pilot.shares] + [nan] * (base - len(pilot.shares)))
@@ -354,8 +360,8 @@ class Splitter:
         cost = np.array([*costs[1:]] + [costs[-1] if len(costs) > 1 else 1.0] * (base - len(costs) + 1))
         cost, shares = np.maximum(cost[asked], 1.0) / n, np.clip(shares[asked], 0.01, 0.99)  # sequences a trial
         wanted = np.sqrt((1.0 - shares) / shares / cost)
-        left = FULL * budget
-        trials = np.maximum(10, np.floor(wanted * ((1.0 - FIRST_SHARE) * left / (wanted @ cost)))).astype(int)
+        left = max(0.0, FULL * budget - work) / runs
+        trials = np.maximum(LEAST_TRIALS, np.floor(wanted * ((1.0 - FIRST_SHARE) * left / (wanted @ cost)))).astype(int)
         paths = max(1, int(FIRST_SHARE * left / (costs[0] / n)))
         levels = tuple(int(level) for level in np.array(every)[asked])
         return Plan(base, most, table, paths, levels, tuple(int(t) for t in trials)), work
@@ -364,7 +370,7 @@ class Splitter:
         """Estimate once."""
         return self._run(np.random.default_rng(seed), plan)[0]
 
-    def _measure(self, rng: np.random.Generator, budget: float) -> tuple[int, int, Wholes, float]:
+    def _measure(self, rng: np.random.Generator) -> tuple[int, int, Wholes, float]:
         """Measure how far sequences are from an alarm; return m₀, the farthest m, the table, and the work."""
         watch, (mean, *others) = self.watch, self._signal
         found = np.zeros((FARTHEST + 2, FARTHEST + 2, 2), np.int64)

@@ -12,6 +12,7 @@ seeds of Markov chains that are distributed as the inputs given g ≤ c_j. A ste
 
 which leaves the normal distribution as it is in any number of dimensions (preconditioned Crank-Nicolson). s_i follows
 the spread of the seeds and is scaled while the chains run, batch by batch, so that 44 % of the proposals are accepted.
+Inputs in which nothing is continuous, such as the number of a flight's noise, are kept or drawn anew.
 Chains cannot see a region of failure in which no seed lies: a margin with several valleys can be underestimated.
 
 Coefficient of variation of one run, with the correlation ρ_j(k) of the chains' indicators at lag k:
@@ -33,6 +34,7 @@ Floats = NDArray[np.float64]
 
 P0 = 0.1  # –, of each level
 BATCHES = 10  # of chains, between which the proposals' spread is adapted
+REDRAWN = 0.5  # –, of the proposals, in which inputs that move as a whole are drawn anew
 ACCEPTED = 0.44  # –, share of proposals that is aimed at (Papaioannou et al.)
 MOST_LEVELS = 40  # 1e-40
 
@@ -73,7 +75,12 @@ class Subset:
 
 
 def run(
-    margins: Callable[[Floats], Floats], dimension: int, seed: np.random.SeedSequence, samples: int, budget: int
+    margins: Callable[[Floats], Floats],
+    dimension: int,
+    seed: np.random.SeedSequence,
+    samples: int,
+    budget: int,
+    whole: int = 0,
 ) -> Subset:
     """Estimate once.
 
@@ -89,6 +96,9 @@ def run(
         N, of each level; a multiple of 10 is used.
     budget : int
         Most evaluations: a run that would need more ends without reaching 0.
+    whole : int
+        How many inputs, the last ones, are kept or drawn anew together, since nothing is continuous in them: the number
+        of a flight's noise.
 
     Raises
     ------
@@ -124,7 +134,7 @@ def run(
         if used + chains * (steps - 1) > budget or len(levels) == MOST_LEVELS:
             return Subset(0.0, np.inf, tuple(levels), used, u[:0], complete=False)
         seeds = rng.permutation(np.flatnonzero(below))
-        u, g, accepted, scale = _chains(margins, u[seeds], g[seeds], bound, steps, scale, rng)
+        u, g, accepted, scale = _chains(margins, u[seeds], g[seeds], bound, steps, scale, whole, rng)
         used += chains * (steps - 1)
         n, shape = len(g), (chains, steps)
 
@@ -136,6 +146,7 @@ def _chains(
     bound: float,
     steps: int,
     scale: float,
+    whole: int,
     rng: np.random.Generator,
 ) -> tuple[Floats, Floats, float, float]:
     """Let chains run from seeds; return all of their states, chain by chain, the share accepted, and the scale."""
@@ -148,7 +159,11 @@ def _chains(
         keep, at, value, moved = np.sqrt(1.0 - s**2), u[batch], g[batch], 0
         states[batch, 0], values[batch, 0] = at, value
         for k in range(1, steps):
-            proposal = keep * at + s * rng.standard_normal(at.shape)
+            fresh = rng.standard_normal(at.shape)
+            proposal = keep * at + s * fresh
+            if whole:
+                anew = rng.random((len(at), 1)) < REDRAWN
+                proposal[:, -whole:] = np.where(anew, fresh[:, -whole:], at[:, -whole:])
             new = _margins(margins, proposal)
             accept = new <= bound
             at, value = np.where(accept[:, np.newaxis], proposal, at), np.where(accept, new, value)
