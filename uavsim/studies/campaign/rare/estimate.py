@@ -28,7 +28,9 @@ Floats = NDArray[np.float64]
 Method = Literal["splitting", "subset simulation", "subset simulation and importance sampling"]
 
 RUNS = 10  # of splitting
+AIM = 0.97  # of the budget; trials have random lengths
 PILOT = 0.45  # of the budget, for the subset simulation that finds failures
+FIRST_ROUND = 0.3  # of the samples around failures, that fit the mixture of the others
 DEEPEST = 7  # levels of a tenth that a budget is planned for: 1e-7
 LEAST_BUDGET = 200  # flights' worth
 CONFIDENCE = 0.95
@@ -182,7 +184,13 @@ def _split(watch: Watch, seed: int, budget: float) -> Estimate:
     first, *others = np.random.SeedSequence(seed).spawn(1 + RUNS)
     splitter = Splitter(watch)
     plan, work = splitter.plan(first, budget, RUNS)
-    runs = [splitter.run(other, plan) for other in others]
+    runs: list[Run] = []
+    scale, scales, spent = 1.0, 0.0, 0.0
+    for number, other in enumerate(others):  # each is as long as what those before it took allows; its own noise has
+        if spent:  # no part in that
+            scale = min(1.5, (AIM * budget - work) / (RUNS - number) * scales / spent)
+        runs.append(splitter.run(other, plan.scaled(scale)))
+        work, spent, scales = work + runs[-1].work, spent + runs[-1].work, scales + scale
     found = np.array([run.probability for run in runs])
     probability = float(found.mean())
     variation = float(found.std(ddof=1)) / probability / sqrt(RUNS) if probability > 0.0 else inf
@@ -196,7 +204,7 @@ def _split(watch: Watch, seed: int, budget: float) -> Estimate:
         high=high,
         variation=variation,
         method="splitting",
-        work=work + sum(run.work for run in runs),
+        work=work,
         starts=RUNS * (plan.paths + sum(plan.trials)),
         seed=seed,
         steps=steps,
@@ -250,12 +258,9 @@ def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
     if not finish:
         return _from_subset(found, problem, seed)
     left = budget - found.evaluations
-    rng = np.random.default_rng(second)
-    chains = max(1, int(0.1 * samples))
-    mixture = shifted.fit(found.failures[:, :around], min(len(found.failures), chains), rng)
-    values, failures = _around(problem, mixture, left, rng)
+    values, failures = _around(problem, found, left, max(1.0, subset.P0 * samples), np.random.default_rng(second))
     if not shifted.trusted(values, found.probability, found.variation):
-        return _from_subset(found, problem, seed, work=found.evaluations + len(values))
+        return _from_subset(found, problem, seed, work=budget)
     probability = float(values.mean())
     variation = float(values.std(ddof=1)) / probability / sqrt(len(values))
     low, high = interval(probability, variation)
@@ -265,8 +270,8 @@ def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
         high=high,
         variation=variation,
         method="subset simulation and importance sampling",
-        work=float(found.evaluations + len(values)),
-        starts=found.evaluations + len(values),
+        work=float(budget),
+        starts=budget,
         seed=seed,
         steps=_levels(found),
         failures=_most_likely(np.vstack([found.failures, failures]), around),
@@ -275,12 +280,24 @@ def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
 
 
 def _around(
-    problem: Inputs, mixture: shifted.Mixture, n: int, rng: np.random.Generator
+    problem: Inputs, found: subset.Subset, n: int, independent: float, rng: np.random.Generator
 ) -> tuple[Floats, Floats]:
-    """Weighted indicators of the event, shape (n,), and the inputs that failed."""
-    u = np.hstack([mixture.draw(n, rng), rng.standard_normal((n, problem.whole))])
-    failed = np.asarray(problem.margins(u), np.float64) <= 0.0
-    return np.where(failed, mixture.ratio(u[:, : mixture.centres.shape[1]]), 0.0), u[failed]
+    """Two rounds of samples around the failures found: weighted indicators of the second, and all that failed."""
+    around = problem.dimension - problem.whole
+    known = found.failures[:, :around]
+    mixture = shifted.fit(known, np.ones(len(known)), min(independent, len(known)), rng)
+    failures = []
+    for size in (int(FIRST_ROUND * n), n - int(FIRST_ROUND * n)):
+        mixture = shifted.mirrored(mixture)
+        u = np.hstack([mixture.draw(size, rng), rng.standard_normal((size, problem.whole))])
+        failed = np.asarray(problem.margins(u), np.float64) <= 0.0
+        values = np.where(failed, mixture.ratio(u[:, :around]), 0.0)
+        failures.append(u[failed])
+        weights = values[failed]
+        if len(weights):
+            many = float(weights.sum() ** 2 / (weights @ weights))
+            mixture = shifted.fit(u[failed][:, :around], weights, many, rng)
+    return values, np.vstack(failures)
 
 
 def _from_subset(found: subset.Subset, problem: Inputs, seed: int, work: int | None = None) -> Estimate:

@@ -3,7 +3,8 @@
     P = E_q[1{g(u) ≤ 0} φ(u)/q(u)],        q(u) = ε φ(u) + (1 - ε) Σ_j π_j φ(u - m_j)
 
 φ is the standard normal density of the inputs; the m_j are centres of the failures, one for each group of them, found
-by expectation maximisation with as many groups as the Bayes information criterion asks for, each chain counted once.
+by expectation maximisation with as many groups as the Bayes information criterion asks for, each chain counted once. The mirror images of the centres are looked at as well. A first round of
+samples gives weighted failures, to which the mixture of the second is fitted; that alone is counted.
 The estimate is unbiased whatever the m_j are; how much it scatters is not known where a region of failure has been
 missed. Its share of the whole is therefore looked at before it is believed (`trusted`). Several dozen inputs are the
 most: each that plays no part adds the error of its centre to the weights.
@@ -22,6 +23,7 @@ Floats = NDArray[np.float64]
 MOST_INPUTS = 30
 MOST_GROUPS = 4
 PLAIN = 0.05  # ε
+MIRRORED = 0.1  # –, of the samples, that look at the opposite side
 ROUNDS = 50  # of expectation maximisation
 LARGEST_SHARE = 0.1  # of the sum of weights, that one sample may have in a trusted estimate
 
@@ -46,20 +48,28 @@ class Mixture:
             return np.asarray(1.0 / (PLAIN + (1.0 - PLAIN) * np.exp(exponent) @ self.weights))
 
 
-def fit(failures: Floats, independent: int, rng: np.random.Generator) -> Mixture:
-    """Fit q to failures, of which so many are independent of each other."""
+def fit(failures: Floats, weights: Floats, independent: float, rng: np.random.Generator) -> Mixture:
+    """Fit q to weighted failures, as many as so many independent ones."""
+    best, least = Mixture(np.ones(1), np.average(failures, axis=0, weights=weights)[np.newaxis]), np.inf
     n, d = failures.shape
-    best, least = Mixture(np.ones(1), failures.mean(axis=0, keepdims=True)), np.inf
+    share = weights / weights.sum()
     for groups in range(1, min(MOST_GROUPS, n) + 1):
-        mixture, likelihood = _maximise(failures, groups, rng)
-        criterion = -2.0 * likelihood * min(1.0, independent / n) + (groups * (d + 1) - 1) * np.log(max(2, independent))
+        mixture, likelihood = _maximise(failures, share, groups, rng)
+        criterion = -2.0 * likelihood * independent + (groups * (d + 1) - 1) * np.log(max(2.0, independent))
         if criterion < least:
             best, least = mixture, criterion
     return best
 
 
-def _maximise(u: Floats, groups: int, rng: np.random.Generator) -> tuple[Mixture, float]:
-    centres = u[[int(rng.integers(len(u)))]]
+def mirrored(mixture: Mixture) -> Mixture:
+    """The same with each centre's mirror image beside it: a region of failure opposite to those that were found."""
+    weights = np.concatenate([(1.0 - MIRRORED) * mixture.weights, MIRRORED * mixture.weights])
+    return Mixture(weights, np.vstack([mixture.centres, -mixture.centres]))
+
+
+def _maximise(u: Floats, share: Floats, groups: int, rng: np.random.Generator) -> tuple[Mixture, float]:
+    """Fit so many groups; return the mean logarithm of their density too, less what all have in common."""
+    centres = u[[int(rng.choice(len(u), p=share))]]
     while len(centres) < groups:  # far from each other
         away = ((u[:, np.newaxis] - centres) ** 2).sum(axis=2).min(axis=1)
         centres = np.vstack([centres, u[int(np.argmax(away))]])
@@ -68,8 +78,8 @@ def _maximise(u: Floats, groups: int, rng: np.random.Generator) -> tuple[Mixture
         logs = np.log(weights) - 0.5 * ((u[:, np.newaxis] - centres) ** 2).sum(axis=2)
         top = logs.max(axis=1, keepdims=True)
         sums = np.exp(logs - top).sum(axis=1, keepdims=True)
-        belongs = np.exp(logs - top) / sums
-        total = float((top + np.log(sums)).sum())
+        belongs = np.exp(logs - top) / sums * share[:, np.newaxis]
+        total = float(share @ (top + np.log(sums))[:, 0])
         mass = np.maximum(belongs.sum(axis=0), 1e-9)
         weights, centres = mass / mass.sum(), (belongs.T @ u) / mass[:, np.newaxis]
     return Mixture(weights, centres), total

@@ -47,6 +47,7 @@ PILOT_TRIALS = 100  # at each distance
 PILOT_SHARE = 0.05  # of the budget, for the pilot's whole sequences
 LEAST_TRIALS = 10  # at each distance of a run
 VISITED = 1000  # samples of a sequence that are looked at to measure distances
+LOOKS = 8  # about so often is the distance looked at on the shortest way to an alarm
 EASY = 0.8  # –, share of trials above which a distance is left out
 STEP = 1.2  # –, of the distance; it is the logarithm of a chance
 FIRST_SHARE = 0.3  # of a run's work that counts excursions
@@ -140,8 +141,8 @@ def _distance(p: Any, q: Any, x: Any, y: Any, k: int, signal: Any, measure: Any,
 
 
 def _enter(
-    p: Any, q: Any, x0: Any, y0: Any, signal: Any, measure: Any, base: int, gate: float, paths: int, rng: Any,
-    xs: Any, ys: Any, ks: Any,
+    p: Any, q: Any, x0: Any, y0: Any, signal: Any, measure: Any, base: int, gate: float, stride: int, paths: int,
+    rng: Any, xs: Any, ys: Any, ks: Any,
 ) -> Any:  # fmt: skip
     """Follow whole sequences; return how many excursions began, and the samples that were taken.
 
@@ -161,7 +162,8 @@ def _enter(
             alarm = RULE(f, k, rate, p, q, x, y, out) > 0
             work += 1
             near = alarm
-            if not alarm and (inside or z > gate):
+            looked = k % stride == 0 and (inside or z > gate)
+            if looked and not alarm:
                 near = DISTANCE(p, q, x, y, k + 1, signal, measure, tried) <= base
             if near and not inside:
                 place = begun if begun < room else int(rng.random() * (begun + 1))
@@ -170,7 +172,7 @@ def _enter(
                     xs[place] = x
                     ys[place] = y
                     ks[place] = -1 if alarm else k + 1
-            if inside or near:
+            if looked or alarm:
                 inside = near
             if alarm:
                 break
@@ -178,8 +180,8 @@ def _enter(
 
 
 def _advance(
-    p: Any, q: Any, xs: Any, ys: Any, ks: Any, signal: Any, measure: Any, base: int, level: int, trials: int, rng: Any,
-    xs2: Any, ys2: Any, ks2: Any,
+    p: Any, q: Any, xs: Any, ys: Any, ks: Any, signal: Any, measure: Any, base: int, level: int, stride: int, trials: int,
+    rng: Any, xs2: Any, ys2: Any, ks2: Any,
 ) -> Any:  # fmt: skip
     """Try to come from the states kept to a distance of `level` or an alarm; return successes and samples taken."""
     mean, sigma, rate, _, _ = signal
@@ -199,7 +201,7 @@ def _advance(
             work += 1
             k += 1
             near = alarm
-            if not alarm:
+            if not alarm and (k - 1) % stride == 0:
                 distance = DISTANCE(p, q, x, y, k, signal, measure, tried)
                 near = distance <= level
                 if distance > base:
@@ -298,6 +300,17 @@ class Plan:
     paths: int
     levels: tuple[int, ...]
     trials: tuple[int, ...]
+
+
+    @property
+    def stride(self) -> int:
+        """Every how many samples a distance is looked at: what has far to go comes no nearer in between."""
+        return max(1, self.most // LOOKS)
+
+    def scaled(self, factor: float) -> "Plan":
+        """The same with so many times as many trials, at least `LEAST_TRIALS` at each distance."""
+        trials = tuple(max(LEAST_TRIALS, int(factor * t)) for t in self.trials)
+        return replace(self, paths=max(1, int(factor * self.paths)), trials=trials)
 
 
 @dataclass(frozen=True)
@@ -405,7 +418,7 @@ class Splitter:
         measure, width = (plan.most, plan.table[[*range(plan.most + 1), -1]]), (x.size, y.size)
         kept = _kept(KEPT, *width)
         begun, work = self._loops.enter(
-            *self._detector, self._signal, measure, plan.base, GATE, plan.paths, rng, *kept
+            *self._detector, self._signal, measure, plan.base, GATE, plan.stride, plan.paths, rng, *kept
         )
         costs, shares, total = [work / plan.paths], [], work
         excursions = begun / plan.paths
@@ -416,7 +429,7 @@ class Splitter:
             pool = tuple(part[:count] for part in kept)
             kept = _kept(min(trials, KEPT), *width)
             reached, work = self._loops.advance(
-                p, q, *pool, self._signal, measure, plan.base, level, trials, rng, *kept
+                p, q, *pool, self._signal, measure, plan.base, level, plan.stride, trials, rng, *kept
             )
             total += work
             costs.append(work / trials)
