@@ -23,7 +23,7 @@ from uavsim.locks import lock
 OURS = frozenset({
     *("truth.parquet", "accelerometer.parquet", "air_data.parquet", "estimate.parquet", "detector.parquet"),
     *("scenario.toml", "score.json", "events.json", "campaign.json", "report.html", "plots", "flights", "runs.parquet"),
-    "inputs",
+    *("inputs", "traces", "sweep.json", "sensitivity.json", "verify.json", "junit.xml", "rare.json", ".keeping"),
 })  # fmt: skip
 """What is in the folders of flights and campaigns, and so is replaced when one is written again."""
 
@@ -197,6 +197,85 @@ class Place:
             self._file = None
 
 
+class StandingPlace(Place):
+    """A target that is written where it stands, for runs that take long and are taken up again: each file is whole.
+
+    What was finished stays there however the run ends; without a finished flight nothing is left.
+
+    Parameters
+    ----------
+    target
+        Made with its parents; an empty folder counts as none.
+    overwrite
+        Replace what a flight or a campaign left there; other files stay.
+    resume
+        Go on with the campaign that is there, if there is one.
+    """
+
+    def __init__(self, target: str | os.PathLike[str], *, overwrite: bool = False, resume: bool = False) -> None:
+        super().__init__(target, overwrite=overwrite)
+        self._resume = resume
+        self.folder = self._real
+
+    def _refuse(self) -> None:
+        if os.path.lexists(self._real) and not self._real.is_dir():
+            raise TakenError(f"{self.target} is a file, not a folder")
+        if not self._real.is_dir():
+            return
+        if _is_held(self._real):
+            raise TakenError(f"{self.target} is being written by another process")
+        names = {entry.name for entry in self._real.iterdir()}
+        if self._resume and not names <= {*OURS, LOCK, SCRATCH, ".keeping"} and "campaign.json" not in names:
+            raise TakenError(f"{self.target} holds no campaign that could be resumed; choose another folder")
+        if names - {LOCK} and not self._overwrite and not self._resume:
+            raise TakenError(f"{self.target} is not empty; choose another folder, or give --resume or --overwrite")
+
+    def claim(self) -> "Place":
+        """Take the place."""
+        try:
+            with Interrupts():
+                self._refuse()
+                self._made = [parent for parent in (self._real, *self._real.parents) if not parent.exists()]
+                self._real.mkdir(parents=True, exist_ok=True)
+                self._file = os.open(self._real / LOCK, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
+                self._hold()
+                if self._overwrite and not self._resume:
+                    _discard(entry for entry in self._real.iterdir() if entry.name in OURS)
+        except BaseException as error:
+            self._give_up()
+            if isinstance(error, OSError) and not isinstance(error, TakenError):
+                raise OSError(f"{self.target} cannot be written: {reason(error)}") from None
+            raise
+        return self
+
+    def _hold(self) -> None:
+        assert self._file is not None
+        try:
+            held = lock(self._file)
+        except OSError:  # a file system without locks
+            held = True
+        if not held:
+            os.close(self._file)
+            self._file, self._made = None, []
+            raise TakenError(f"{self.target} is being written by another process")
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
+        with suppress(KeyboardInterrupt), Interrupts():
+            self._give_up()
+
+    def _give_up(self) -> None:
+        if self._file is not None:
+            with suppress(OSError):
+                shutil.rmtree(self._real / SCRATCH, ignore_errors=True)
+                if self._made and not _is_flown(self._real):
+                    _discard(entry for entry in self._real.iterdir() if entry.name in OURS)
+                (self._real / LOCK).unlink()
+        self._unlock()
+        for parent in self._made:
+            with suppress(OSError):  # it is not empty
+                parent.rmdir()
+
+
 class FilePlace(Place):
     """The same for one file: what is written as `folder / target.name` becomes it."""
 
@@ -279,16 +358,18 @@ def _is_held(folder: Path) -> bool:
         os.close(file)
 
 
+def _discard(entries: Iterable[Path]) -> None:
+    for entry in entries:
+        if entry.is_dir() and not entry.is_symlink():
+            shutil.rmtree(entry)
+        else:
+            entry.unlink()
+
+
 def _move(entries: Iterable[Path], folder: Path) -> None:
     for entry in entries:
         entry.rename(folder / entry.name)
 
 
 def _empty(folder: Path, *, but: tuple[str, ...]) -> None:
-    for entry in folder.iterdir():
-        if entry.name in but:
-            continue
-        if entry.is_dir() and not entry.is_symlink():
-            shutil.rmtree(entry)
-        else:
-            entry.unlink()
+    _discard(entry for entry in folder.iterdir() if entry.name not in but)

@@ -313,23 +313,28 @@ def _apply(values: dict[str, Any], override: str) -> str:
     key, equals, text = (part.strip() for part in override.partition("="))
     if not equals or not key:
         raise ValueError(f"--set {shown(override)}: give it as KEY=VALUE")
-    free = key.startswith(PROPERTIES)  # what follows is JSBSim's name, which holds slashes and may hold dots
-    declared = not free and not key.startswith(OPTIONS)
+    declared = not key.startswith((PROPERTIES, *OPTIONS))  # JSBSim's names hold slashes and may hold dots
     if declared and key not in keys():
         raise ValueError(f"--set: {settings.unknown(Scenario, key).problem}")
+    value = _value(text)
+    is_text = declared and settings.hint_of(Scenario, key) is str
+    _set(values, key, text if is_text and not isinstance(value, str) else value)
+    return key
+
+
+def _set(values: dict[str, Any], key: str, value: Any) -> None:
+    """Put a value under a key joined by dots."""
+    free = key.startswith(PROPERTIES)
     *groups, last = [*PROPERTIES.split(".")[:2], key.removeprefix(PROPERTIES)] if free else key.split(".")
     group = values
     for part in groups:
         group = group.setdefault(part, {})
         if not isinstance(group, dict):
-            raise SettingError(f"--set {shown(override)}: {part} is a value, not a group")
-    value = _value(text)
+            raise SettingError(f"--set {shown(key)}: {part} is a value, not a group")
     if key == WEATHER and value in list(PRESETS):  # one that is asked for comes before what the file says of the same
         for name in PRESETS[value].keys:
             group.pop(name, None)
-    is_text = declared and settings.hint_of(Scenario, key) is str
-    group[last] = text if is_text and not isinstance(value, str) else value
-    return key
+    group[last] = value
 
 
 def _value(text: str) -> Any:
@@ -440,6 +445,25 @@ def with_kinds(s: Scenario, **chosen: Any) -> Scenario:
         kept = {"axes": values[what]["axes"]} if what == "detector" else {}
         values[what] = {**own, **kept, "kind": name}
     return Scenario.from_dict(values, s.name) if values != s.to_dict() else s
+
+
+def changed(s: Scenario, keys: Mapping[str, Any]) -> Scenario:
+    """The same scenario with other values under keys joined by dots.
+
+    Raises
+    ------
+    ValueError
+        One line: an unknown key, or a value that cannot be.
+    """
+    values = s.to_dict()
+    try:
+        for key, value in keys.items():
+            if not key.startswith((PROPERTIES, *OPTIONS)) and key not in settings.keys(Scenario):
+                raise settings.unknown(Scenario, key)
+            _set(values, key, value)
+    except SettingError as error:
+        raise ValueError(f"{s.name}: {error.problem}") from None
+    return Scenario.from_dict(values, s.name)
 
 
 def _airframe(model: str) -> str:

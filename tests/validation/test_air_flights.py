@@ -16,7 +16,7 @@ import pytest
 from scipy.stats import fisher_exact
 
 import uavsim
-from uavsim.studies.processes import each
+from uavsim.studies.engine import engine
 
 pytestmark = pytest.mark.slow
 
@@ -51,10 +51,11 @@ def flown(elevation: int, seed: int) -> Flown:
 @pytest.fixture(scope="module")
 def fields() -> dict[int, list[Flown]]:
     found = {}
-    for elevation in FIELDS:
-        rows: dict[int, Flown] = {}
-        each(partial(flown, elevation), list(SEEDS), workers=WORKERS, done=rows.update)
-        found[elevation] = [rows[i] for i in range(len(SEEDS))]
+    with engine(workers=WORKERS) as crew:
+        for elevation in FIELDS:
+            rows: dict[int, Flown] = {}
+            assert crew.each(partial(flown, elevation), list(SEEDS), done=rows.update) == []
+            found[elevation] = [rows[i] for i in range(len(SEEDS))]
     return found
 
 

@@ -9,6 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from uavsim.cli.bench import bench
+from uavsim.cli.campaign import campaign
 from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, Interrupted, WrongInputError, told
 from uavsim.cli.fly import fly
 from uavsim.cli.paper import paper
@@ -24,7 +25,7 @@ from uavsim.failure import PartError
 from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
-COMMANDS = (scenarios, fly, replay, sensors, roc, tune, survey, paper, plugins, bench)
+COMMANDS = (scenarios, fly, campaign, replay, sensors, roc, tune, survey, paper, plugins, bench)
 """In the order of the help."""
 
 
@@ -60,6 +61,7 @@ def uavsim(
       uavsim scenarios
       uavsim fly catapult --seed 7
       uavsim fly gusty --seeds 1-50 --out output/gusty-50
+      uavsim campaign dispersed --runs 1000 --out output/dispersed
       uavsim replay output/catapult-7
       uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
       uavsim sensors bmp390

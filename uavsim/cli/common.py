@@ -76,9 +76,9 @@ def plug_in(names: list[str] | None) -> None:
 
 
 @contextmanager
-def folder(out: Path | None, name: str, *, overwrite: bool, kind: type[Place] = Place) -> Iterator[Place]:
+def folder(out: Path | None, name: str, *, overwrite: bool, kind: Callable[..., Place] = Place) -> Iterator[Place]:
     """Hold the folder to write to the end of the block: the one asked for, or a free one below `output/`."""
-    place = _free(name) if out is None else kind(out, overwrite=overwrite).claim()
+    place = _free(name, kind) if out is None else kind(out, overwrite=overwrite).claim()
     try:
         with place, _scratch_in(place.folder / SCRATCH), _matplotlib_in(place.folder / SCRATCH):
             yield place
@@ -137,10 +137,10 @@ def _may_write(folder: Path) -> bool:
     return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 
 
-def _free(name: str) -> Place:
+def _free(name: str, kind: Callable[..., Place]) -> Place:
     """The first place of this name, or with a number, that nobody has."""
     for number in count(1):
-        place = Place(Path("output") / (name if number == 1 else f"{name}-{number}"))
+        place = kind(Path("output") / (name if number == 1 else f"{name}-{number}"))
         with suppress(TakenError):
             return place.claim()
     raise AssertionError

@@ -5,6 +5,7 @@ import shlex
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -25,16 +26,17 @@ from uavsim.cli.common import (
     plug_in,
     user_input,
 )
+from uavsim.cli.flights import Means, Watch, ready, remark
 from uavsim.cli.printed import Json, document
 from uavsim.folders import Place
-from uavsim.views.text import visible
 
 if TYPE_CHECKING:
     from uavsim.cosim import Cosimulation
     from uavsim.flight import Flight
     from uavsim.scenario import Scenario
     from uavsim.studies.batch import Batch
-    from uavsim.views.batch import Record
+    from uavsim.studies.campaign.campaign import Flights
+    from uavsim.studies.campaign.record import Record
 
 Held = AbstractContextManager[Place]
 Ready = Callable[[], "Cosimulation"]
@@ -43,10 +45,14 @@ MOST_FLIGHTS = 100_000
 
 
 def fly(
-    scenario: Annotated[str, typer.Argument(help="A packaged name, a TOML file or a flight's folder.")] = "catapult",
+    scenario: Annotated[
+        str | None, typer.Argument(help="A packaged name (catapult if not given), a TOML file or a flight's folder.")
+    ] = None,
     *,
     seed: Annotated[int | None, typer.Option(help="Draws sensors, clocks, wait, wind and force.")] = None,
     seeds: Annotated[str | None, typer.Option(help="Several flights: 1-50 or 1,5,9.")] = None,
+    from_: Annotated[Path | None, typer.Option("--from", help="A campaign's folder: fly one of its flights.")] = None,
+    index: Annotated[int | None, typer.Option(min=0, help="Which of them.")] = None,
     out: Out = None,
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the scenario.")
@@ -62,6 +68,8 @@ def fly(
 
     Example: uavsim fly gusty --seeds 1-50 --out output/gusty-50
 
+    Example: uavsim fly --from output/dispersed-1-1000 --index 17
+
     Example: uavsim fly catapult --plugin mine.py --set detector.kind=mine --set detector.options.level=30
     """
     from uavsim.scenario import load_scenario
@@ -69,36 +77,55 @@ def fly(
     plug_in(plugin)
     if seed is not None and seeds is not None:
         raise typer.BadParameter("give --seed or --seeds, not both")
+    if from_ is not None:
+        _refuse_with_from(scenario, seed, seeds, settings)
+        loaded = _again(from_, index)
+        where = folder(out, f"{loaded.name}-{loaded.seed}-flight-{loaded.index}", overwrite=overwrite)
+        _fly_one(where, partial(ready, loaded, None), plots=not no_plots, as_json=as_json)
+        return
+    if index is not None:
+        raise typer.BadParameter("--index needs --from, the campaign's folder")
     numbers = [] if seeds is None else seeds_of(seeds)
     with user_input():
         first = numbers[0] if numbers else seed
-        loaded = load_scenario(scenario, overrides=settings or (), seed=first, seed_name="--seed")
+        loaded = load_scenario(scenario or "catapult", overrides=settings or (), seed=first, seed_name="--seed")
 
-    name = f"{loaded.name}-{named(numbers) or loaded.seed}"
-    place = folder(out, name, overwrite=overwrite)
-    ready = partial(_ready, loaded, settings or ())
+    place = folder(out, f"{loaded.name}-{named(numbers) or loaded.seed}", overwrite=overwrite)
+    given = settings or []
     if numbers:
-        given = [scenario, *(part for change in settings or () for part in ("--set", change))]
-        _fly_many(loaded, numbers, place, ready, plots=not no_plots, given=given, as_json=as_json)
+        again = shlex.join(
+            ["uavsim", "fly", scenario or "catapult", *(part for change in given for part in ("--set", change))]
+        )
+        _fly_many(loaded, numbers, place, given, plots=not no_plots, as_json=as_json, again=again)
     else:
-        _fly_one(place, ready, plots=not no_plots, as_json=as_json)
+        _fly_one(place, partial(ready, loaded, given), plots=not no_plots, as_json=as_json)
 
 
-def _ready(scenario: "Scenario", given: list[str] | tuple[()]) -> "Cosimulation":
-    """Set a flight up: only JSBSim knows whether an aircraft has the properties that are asked for."""
-    from uavsim.cosim import Cosimulation
+def _refuse_with_from(scenario: str | None, seed: int | None, seeds: str | None, settings: list[str] | None) -> None:
+    """A flight of a campaign is flown as it was."""
+    given = {"SCENARIO": scenario, "--seed": seed, "--seeds": seeds, "--set": settings}
+    wrong = next((name for name, value in given.items() if value), None)
+    if wrong is not None:
+        raise typer.BadParameter(f"--from flies what is in that folder; it goes with --index, not with {wrong}")
 
-    where = "--set" if any(g.strip().startswith("aircraft.") for g in given) else scenario.name
-    with user_input(f"{where}: "):
-        return Cosimulation(scenario)
+
+def _again(campaign: Path, index: int | None) -> "Scenario":
+    """Return what flew as one flight of a campaign."""
+    from uavsim.studies.campaign.campaign import scenario_in
+    from uavsim.studies.campaign.record import plan_in
+
+    if index is None:
+        raise typer.BadParameter("--from needs --index, the flight's number")
+    with user_input():
+        return scenario_in(plan_in(campaign), index)
 
 
-def _fly_one(place: Held, ready: Ready, *, plots: bool, as_json: bool) -> None:
+def _fly_one(place: Held, set_up: Ready, *, plots: bool, as_json: bool) -> None:
     from uavsim.views import documents, terminal
 
     with place as held:  # before anything is flown in vain
-        simulation = ready()
-        _remark(simulation.remarks)
+        simulation = set_up()
+        remark(simulation.remarks)
         flight = _flown(simulation)
         flight.write(held.folder, plotter(flight) if plots else None)
     if as_json:
@@ -107,12 +134,6 @@ def _fly_one(place: Held, ready: Ready, *, plots: bool, as_json: bool) -> None:
         terminal.print_score(flight)
         terminal.say(f"written to {held.target}")
     leave(as_expected(flight.score))
-
-
-def _remark(remarks: list[str]) -> None:
-    """Say at the start what deserves a word."""
-    for remark in remarks:
-        typer.echo(f"Note: {visible(remark)}", err=True)
 
 
 def _flown(simulation: "Cosimulation") -> "Flight":
@@ -131,57 +152,68 @@ def _flown(simulation: "Cosimulation") -> "Flight":
 
 
 def _fly_many(
-    scenario: "Scenario",
-    numbers: list[int],
-    place: Held,
-    ready: Ready,
-    *,
-    plots: bool,
-    given: list[str],
-    as_json: bool,
+    scenario: "Scenario", numbers: list[int], place: Held, given: list[str], *, plots: bool, as_json: bool, again: str
 ) -> None:
-    from uavsim.studies.batch import fly_seeds
-    from uavsim.views import batch as view
+    from uavsim.studies.batch import batch_of
+    from uavsim.studies.campaign.keep import FIRST_AND_FAILURES
+    from uavsim.studies.campaign.plan import Seeds
+    from uavsim.studies.campaign.record import Record
+    from uavsim.studies.engine import processes
     from uavsim.views import documents, terminal
 
+    plan = Seeds(scenario, tuple(numbers))
     with place as held:
-        _remark(ready().remarks)  # and to see whether it can be flown
-        record = view.Record(held.folder, scenario, numbers)
-        with Bar(f"flying {scenario.name}") as bar:
-            flown = fly_seeds(scenario, numbers, progress=lambda n, all_: bar.show(n / all_), keep=record.keep)
-        left = _left(flown, given)
-        if not len(flown.runs):
-            raise KeyboardInterrupt if not flown.lost else WrongInputError(f"no flight is finished: {left}")
-        drawn = _closed(record, flown, plots=plots)
+        remark(ready(plan.flight(0), given).remarks)  # and to see whether it can be flown
+        record = Record(held.folder, plan, keep=str(FIRST_AND_FAILURES))
+        flights = _flown_many(record, Means(workers=processes(None, len(numbers))))
+        all_ = batch_of(flights)
+        left = _left(flights, again)
+        if not len(all_.runs):
+            raise KeyboardInterrupt if not left else WrongInputError(f"no flight is finished: {left}")
+        drawn = _closed(record, flights, all_, plots=plots)
     if as_json:
-        document(documents.batch(flown, held.target))
+        document(documents.batch(all_, held.target))
     else:
-        terminal.print_batch(flown)
+        terminal.print_batch(all_)
         terminal.say(f"written to {held.target}")
     if left:
         typer.echo(f"unfinished: {left}", err=True)
         leave(well=False)
-    if not (flown.complete and drawn):
-        remark = "" if drawn else "; not all plots are drawn"
-        raise Interrupted(f"{len(flown.runs)} of {len(numbers)} flights are kept{remark}")
-    leave(_all_as_expected(flown))
+    if not (flights.complete and drawn):
+        words = "" if drawn else "; not all plots are drawn"
+        raise Interrupted(f"{len(all_.runs)} of {len(numbers)} flights are kept{words}")
+    leave(_all_as_expected(all_))
 
 
-def _left(flown: "Batch", given: list[str]) -> str:
-    """Name the seeds whose process died, and the command that flies them; empty if there are none."""
-    from uavsim.views.batch import ranges
+def _flown_many(record: "Record", means: Means) -> "Flights":
+    """Fly all; an interrupt leaves what is finished."""
+    from uavsim.studies.campaign.campaign import Flights, fly_plan
+    from uavsim.studies.campaign.keep import FIRST_AND_FAILURES
 
-    if not flown.lost:
-        return ""
-    seeds = ranges(flown.lost)
-    command = shlex.join(["uavsim", "fly", *given, "--seeds", seeds])
-    return f"seed {seeds}, whose process died twice; what is left is flown by: {command}"
-
-
-def _closed(record: "Record", flown: "Batch", *, plots: bool) -> bool:
-    """Complete the folder; False if somebody did not want to wait for it."""
     try:
-        record.close(flown, plots=plots)
+        with Watch(record.plan.scenario.name) as progress, means.crew() as crew:
+            return fly_plan(record, crew, FIRST_AND_FAILURES, progress=progress)
+    except KeyboardInterrupt:
+        return Flights(record.folder, record.plan, complete=False)
+
+
+def _left(flights: "Flights", again: str) -> str:
+    """Name the seeds that could not be flown, and the command that flies them; empty if there are none."""
+    from uavsim.studies.campaign.record import ranges
+
+    if not flights.left:
+        return ""
+    seeds = ranges(flights.plan.index(one.position) for one in flights.left)
+    why = "; ".join(dict.fromkeys(one.why for one in flights.left))
+    return f"seed {seeds}: {why}; what is left is flown by: {again} --seeds {seeds}"
+
+
+def _closed(record: "Record", flights: "Flights", flown: "Batch", *, plots: bool) -> bool:
+    """Complete the folder; False if somebody did not want to wait for it."""
+    from uavsim.views import batch as view
+
+    try:
+        view.close(record, flights, flown, plots=plots)
     except KeyboardInterrupt:
         return False
     return True

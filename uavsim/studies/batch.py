@@ -5,70 +5,28 @@ they finish. Of every flight its score is kept as one row, and its airspeed erro
 are kept only where somebody will want to look: the first, and those that did not end as expected.
 """
 
-import math
-import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.cosim import draw, fly
 from uavsim.flight import Flight
-from uavsim.interrupts import Interrupts
-from uavsim.onboard.airspeed.kinds import is_aided
-from uavsim.plugins import load, loaded
-from uavsim.scenario import Scenario, scenario_of
-from uavsim.score import HIDDEN
-from uavsim.studies.airspeed_flights import Course, course
-from uavsim.studies.processes import each
+from uavsim.scenario import Scenario
+from uavsim.studies.campaign.campaign import Flights, first_flight, limit_of
+from uavsim.studies.campaign.flown import ERROR_START, ERROR_STEP, ErrorTrace, Flown, fly_position
+from uavsim.studies.campaign.keep import FIRST_AND_FAILURES
+from uavsim.studies.campaign.plan import Seeds
+from uavsim.studies.engine import engine, processes
 
 if TYPE_CHECKING:
     import pandas as pd
 
-ERROR_STEP = 0.1  # s, bin of the common time axis of errors
-COURSES = 60  # flights whose courses are kept; the information of the bound is averaged over them
-APART = (
-    "seed",
-    "outcome",
-    "versions",
-    "plugins",
-    "requirements",
-    "remarks",
-)  # of a score: not of a row, or by another name
-ERROR_START = -1.0  # s after the true launch at which it begins
-
 Progress = Callable[[int, int], None]
 """Called with the number of finished flights and of all."""
-Result = tuple[dict[str, Any], "ErrorTrace", Flight | None]
-"""Row, errors, and the flight itself if it is kept."""
-Finished = Callable[[list[tuple[int, Result]]], None]
-"""Called with flights' positions among the seeds and what they gave; nothing interrupts it."""
-
-
-@dataclass(frozen=True, slots=True)
-class ErrorTrace:
-    """Airspeed error of one flight against time since the true launch.
-
-    Attributes
-    ----------
-    seed : int
-    filtered, raw : ndarray
-        Binned rms, m/s.
-    nees : ndarray
-        (Error over claimed standard deviation)² of the last row of each bin; NaN without one, and below V*.
-    course : Course or None
-        Of the first `COURSES` flights with the aided estimator: what its bound is computed from.
-    """
-
-    seed: int
-    filtered: NDArray[np.float64]
-    raw: NDArray[np.float64]
-    nees: NDArray[np.float64]
-    course: Course | None = None
 
 
 @dataclass(frozen=True)
@@ -82,13 +40,13 @@ class Batch:
     traces
         Airspeed errors, in the order of `runs`.
     kept
-        Whole flights by seed.
+        Whole flights by index; of `fly_seeds` that is the seed.
     complete
         False if it was interrupted, or a flight could not be flown.
     wall_time
         s.
     lost
-        Seeds of flights that could not be flown: their process died twice.
+        Indices of flights that could not be flown.
     """
 
     scenario: Scenario
@@ -107,14 +65,9 @@ class Batch:
 
 
 def fly_seeds(
-    scenario: Scenario,
-    seeds: list[int],
-    *,
-    workers: int | None = None,
-    progress: Progress | None = None,
-    keep: Finished | None = None,
+    scenario: Scenario, seeds: list[int], *, workers: int | None = None, progress: Progress | None = None
 ) -> Batch:
-    """Fly a scenario once a seed.
+    """Fly a scenario once a seed, and keep what it gave in memory: for some tens of flights.
 
     Parameters
     ----------
@@ -123,11 +76,9 @@ def fly_seeds(
     seeds
         One flight each.
     workers
-        Processes that fly; None: one a processor.
+        Processes that fly; None: one a processor; with one, or one seed, this one flies.
     progress
         Called after each flight.
-    keep
-        Called with what is finished before it counts as finished: writes it down.
 
     Returns
     -------
@@ -137,125 +88,45 @@ def fly_seeds(
     """
     import pandas as pd
 
+    plan = Seeds(scenario, tuple(seeds))
     started = time.monotonic()
-    done: dict[int, Result] = {}
-    lost: list[int] = []
+    done: dict[int, Flown] = {}
+    lost: tuple[int, ...] = ()
 
-    def finished(results: list[tuple[int, Result]]) -> None:
-        if keep is not None:
-            keep(results)
+    def finished(results: list[tuple[int, Flown]]) -> None:
         for position, result in results:
             done[position] = result
             if progress is not None:
                 progress(len(done), len(seeds))
 
-    workers = workers or os.cpu_count() or 1
+    limit = limit_of(plan)
     try:
-        if workers == 1 or len(seeds) <= 1:
-            _in_turn(scenario, seeds, finished)
-        else:
-            fly_one = partial(_one_of, scenario)
-            lost = each(
-                fly_one,
-                list(enumerate(seeds)),
-                workers=min(workers, len(seeds)),
-                done=finished,
-                first=partial(load, loaded()),
-            )
+        with engine(workers=processes(workers, len(seeds))) as crew:
+            work = partial(fly_position, plan, FIRST_AND_FAILURES, limit)
+            lost = tuple(seeds[one.position] for one in crew.each(work, range(len(seeds)), done=finished, limit=limit))
     except KeyboardInterrupt:
         pass  # what was finished tells it
     ordered = [done[position] for position in sorted(done)]
     return Batch(
         scenario=scenario,
-        runs=pd.DataFrame([row for row, _, _ in ordered]),
-        traces=[trace for _, trace, _ in ordered],
-        kept={flight.score["seed"]: flight for _, _, flight in ordered if flight is not None},
+        runs=pd.DataFrame([flown.row for flown in ordered]),
+        traces=[flown.trace for flown in ordered if flown.trace is not None],
+        kept={flown.row["index"]: flown.flight for flown in ordered if flown.flight is not None},
         complete=len(done) == len(seeds),
         wall_time=time.monotonic() - started,
-        lost=tuple(seeds[position] for position in lost),
+        lost=lost,
     )
 
 
-def _in_turn(scenario: Scenario, seeds: list[int], finished: Finished) -> None:
-    for position, seed in enumerate(seeds):
-        result = _one(scenario, seed, position=position)
-        with Interrupts():
-            finished([(position, result)])
-
-
-def _one_of(scenario: Scenario, which: tuple[int, int]) -> Result:
-    """Fly a seed, given with its position."""
-    position, seed = which
-    return _one(scenario, seed, position=position)
-
-
-def _one(scenario: Scenario, seed: int, *, position: int) -> Result:
-    """Fly one seed; the whole flight comes back only if somebody will look at it."""
-    own = scenario.with_seed(seed)
-    flight = fly(own)
-    draws = draw(own)
-    row = {
-        "index": 0,
-        "seed": seed,
-        "outcome": flight.score["outcome"],
-        "draw.release_time": draws.release_time,
-        "draw.force_factor": draws.force_factor,
-        **_flat({name: value for name, value in flight.score.items() if name not in APART}),
-        "requirements.met": all(r["met"] for r in flight.score["requirements"]),
-    }
-    unexpected = flight.score["outcome"] != flight.score["expected"]
-    return row, _trace(flight, with_course=position < COURSES), flight if position == 0 or unexpected else None
-
-
-def _flat(value: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, item in value.items():
-        if isinstance(item, dict):
-            flat |= _flat(item, f"{prefix}{key}.")
-        else:
-            flat[prefix + key] = math.nan if item is None else item
-    return flat
-
-
-def _trace(flight: Flight, *, with_course: bool) -> ErrorTrace:
-    true_time = flight.score["launch"]["true_time"]
-    if true_time is None:
-        empty = np.empty(0)
-        return ErrorTrace(flight.score["seed"], empty, empty, empty)
-    estimate, truth = flight.estimate, flight.truth
-    time = estimate["t"].to_numpy(float)
-    airspeed = np.interp(time, truth["t"].to_numpy(), truth["airspeed"].to_numpy())
-    bins = np.floor((time - true_time - ERROR_START) / ERROR_STEP).astype(int)
-    filtered, raw = (
-        _binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")
+def batch_of(flights: Flights) -> Batch:
+    """Return what a campaign's folder holds of all flights together."""
+    first = first_flight(flights)
+    return Batch(
+        scenario=flights.scenario,
+        runs=flights.runs,
+        traces=flights.traces,
+        kept={} if first is None else {first[0]: first[1]},
+        complete=flights.complete,
+        wall_time=flights.wall_time,
+        lost=tuple(flights.plan.index(one.position) for one in flights.left),
     )
-    bounded = is_aided(scenario_of(flight).estimator.kind) and flight.score["launch"]["detected_time"] is not None
-    return ErrorTrace(
-        flight.score["seed"],
-        filtered,
-        raw,
-        nees=_last_nees(estimate["airspeed"].to_numpy(float), airspeed, estimate["airspeed_sd"].to_numpy(float), bins),
-        course=course(flight) if with_course and bounded and flight.score["airspeed"]["rmse"] is not None else None,
-    )
-
-
-def _last_nees(
-    speed: NDArray[np.float64], true: NDArray[np.float64], sd: NDArray[np.float64], bins: NDArray[np.int_]
-) -> NDArray[np.float64]:
-    """NEES of the last row of each bin; rows below V* say nothing."""
-    found = np.full(int(bins.max(initial=-1)) + 1, np.nan)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        nees = np.where((sd > 0.0) & (speed >= HIDDEN * sd), ((speed - true) / sd) ** 2, np.nan)
-    use = bins >= 0
-    found[bins[use]] = nees[use]  # of several the last one stays
-    return found
-
-
-def _binned_rms(error: NDArray[np.float64], bins: NDArray[np.int_]) -> NDArray[np.float64]:
-    use = (bins >= 0) & np.isfinite(error)
-    count = np.bincount(bins[use])
-    total = np.bincount(bins[use], error[use] ** 2)
-    rms = np.full(count.size, np.nan)
-    np.divide(total, count, out=rms, where=count > 0)
-    np.sqrt(rms, out=rms)
-    return rms

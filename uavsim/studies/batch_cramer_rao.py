@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.studies.airspeed_flights import bound, together
-from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch
+from uavsim.studies.batch import Batch
+from uavsim.studies.campaign.flown import ERROR_START, ERROR_STEP
 
 Array = NDArray[np.float64]
 

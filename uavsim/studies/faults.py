@@ -13,7 +13,6 @@ Each case is a packaged scenario, its overrides and a fault whose beginning is d
 Shares have Clopper-Pearson intervals.
 """
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,8 +24,8 @@ import numpy as np
 from sensors import Streams
 from uavsim.cosim import Cosimulation
 from uavsim.scenario import load_scenario
+from uavsim.studies.engine import engine, processes
 from uavsim.studies.intervals import share_interval
-from uavsim.studies.processes import each
 
 OFF = 2.0  # m/s, true error from which on a fault has to be seen
 WITHIN = 2.0  # s
@@ -228,9 +227,6 @@ def campaign(
     if flights < 1:
         raise ValueError(f"flights: {flights} is not at least 1")
     seeds = range(first_seed, first_seed + flights)
-    workers = min(workers or os.cpu_count() or 1, flights)
-    if workers == 1:
-        return [fly_case(CASES[name], seed, extra) for seed in seeds]
     flown: dict[int, FaultFlight] = {}
 
     def done(results: list[tuple[int, FaultFlight]]) -> None:
@@ -238,9 +234,10 @@ def campaign(
         if progress is not None:
             progress(len(flown) / flights)
 
-    lost = each(partial(_fly_seed, name, extra), list(seeds), workers=workers, done=done)
-    if lost:
-        raise RuntimeError(f"the process of seed {seeds[lost[0]]} of {name} died twice")
+    with engine(workers=processes(workers, flights)) as crew:
+        left = crew.each(partial(_fly_seed, name, extra), seeds, done=done)
+    if left:
+        raise RuntimeError(f"seed {seeds[left[0].position]} of {name}: {left[0].why}")
     return [flown[position] for position in range(flights)]
 
 

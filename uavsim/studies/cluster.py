@@ -1,0 +1,305 @@
+"""Where many flights are flown: processes of this machine, or a cluster of the user's, by dask.distributed.
+
+The cluster of this machine begins and ends with the run. What listens is on loopback and speaks TLS with keys that are
+made for this run and never written, so that no other account of the machine can send it work; it serves no HTTP. Its
+processes end with this one, however that ends, and do not hear Ctrl-C: their parent does.
+
+A scheduler of the user's is reached by its address or by its scheduler file. Whoever can talk to a scheduler can run
+code on all its workers and hand results to its clients; so one that is neither on loopback nor encrypted is refused
+unless the user insists.
+"""
+
+import ipaddress
+import json
+import os
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from uavsim.interrupts import ignore, withheld
+
+if TYPE_CHECKING:
+    from distributed import Client, LocalCluster, Security, Worker
+
+PATIENCE = 10.0  # s that a scheduler has to answer
+LOOK = 5.0  # s between two looks how many workers there are
+ENDING = 5.0  # s that processes have to end by themselves
+LARGEST_FILE = 1_000_000  # bytes of a scheduler file
+QUIET = {  # of the cluster of this machine
+    "distributed.scheduler.allowed-failures": 0,  # who dies with a worker is ours to say
+    "distributed.scheduler.work-stealing": False,  # there is one task a worker
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+    "distributed.worker.multiprocessing-method": "spawn",
+    "distributed.comm.timeouts.connect": "30s",
+    "distributed.admin.tick.limit": "1h",
+}
+
+
+class ClusterError(Exception):
+    """A cluster that cannot be used, or is no more; one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Remote:
+    """A scheduler of the user's.
+
+    Attributes
+    ----------
+    address : str
+        tcp://HOST:PORT or tls://HOST:PORT, or the path of a scheduler file.
+    ca, certificate, key : str or None
+        Files in PEM format for TLS.
+    insecure : bool
+        Use one that is neither on loopback nor encrypted.
+    """
+
+    address: str
+    ca: str | None = None
+    certificate: str | None = None
+    key: str | None = None
+    insecure: bool = False
+
+
+@dataclass(frozen=True)
+class Site:
+    """Workers that can be given work.
+
+    Attributes
+    ----------
+    client : distributed.Client
+    workers : callable
+        How many tasks may be under way.
+    local : bool
+        Whether they are ours: of this machine, and for this run alone.
+    stop : callable
+        Ends those that are ours at once, whatever they do.
+    """
+
+    client: "Client"
+    workers: Callable[[], int]
+    local: bool
+    stop: Callable[[], None]
+
+
+@contextmanager
+def local(workers: int, *, dashboard: bool = False) -> Iterator[Site]:
+    """Have processes of this machine to the end of the block.
+
+    Parameters
+    ----------
+    workers : int
+        Processes.
+    dashboard : bool
+        Serve dask's pages on loopback, at a port that is told by `client.dashboard_link`; without a password: for
+        machines that nobody else uses.
+
+    Raises
+    ------
+    ClusterError
+        The processes cannot be started.
+    """
+    import dask
+    from distributed import Client
+
+    settings = {key: value for key, value in QUIET.items() if not (dashboard and "http.routes" in key)}
+    with dask.config.set({**settings, "temporary-directory": tempfile.gettempdir()}), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of ports in use, and of what tornado closes late
+        with withheld():  # threads and processes that begin here never hear Ctrl-C
+            cluster = _cluster(workers, dashboard=dashboard)
+        client = Client(cluster, set_as_default=False)
+        try:
+            if not dashboard:
+                _stop_serving(cluster.scheduler)
+                client.register_plugin(_quiet())
+            yield Site(client, lambda: _alive(cluster), local=True, stop=lambda: _kill(cluster))
+        finally:
+            _end(client, cluster)
+
+
+def _cluster(workers: int, *, dashboard: bool) -> "LocalCluster":
+    from distributed import LocalCluster
+
+    try:
+        return LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            security=True,
+            dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": dashboard},
+            memory_limit=None,
+            silence_logs=100,
+        )
+    except (RuntimeError, OSError, TimeoutError) as error:
+        raise ClusterError(
+            f"no process could be started to fly in ({_line(error)}); each of them runs the main script anew: that "
+            "needs to be a file whose work is below `if __name__ == '__main__':`"
+        ) from error
+
+
+def _alive(cluster: "LocalCluster") -> int:
+    """How many can be given work: not those that have died and are not yet there again, so that none is blamed twice."""
+    return max(1, len(cluster.scheduler.workers))
+
+
+def _quiet() -> Any:
+    """What each worker is told when it begins."""
+    from distributed import WorkerPlugin
+
+    class Quiet(WorkerPlugin):
+        """Ends the HTTP server, which has no routes, and lets nothing but its parent end the process."""
+
+        name = "uavsim-quiet"
+
+        def setup(self, worker: "Worker") -> None:
+            ignore_signals()
+            _stop_serving(worker)
+
+    return Quiet()
+
+
+def _stop_serving(server: Any) -> None:
+    """End the HTTP server of a scheduler or worker."""
+    if server.http_server is not None:
+        server.http_server.stop()
+
+
+def ignore_signals() -> None:
+    """Let a worker go on; only its main thread may say so, and elsewhere they are withheld already."""
+    with suppress(ValueError):
+        ignore()
+
+
+def _kill(cluster: "LocalCluster") -> None:
+    for nanny in cluster.workers.values():
+        nanny.auto_restart = False
+        process = getattr(nanny, "process", None)
+        pid = getattr(process, "pid", None)
+        if pid:
+            with suppress(ProcessLookupError):
+                os.kill(pid, 9)
+
+
+def _end(client: "Client", cluster: "LocalCluster") -> None:
+    """End everything; nothing that goes wrong here is of interest to anybody."""
+    for end in (lambda: client.close(timeout=ENDING), lambda: cluster.close(timeout=ENDING)):
+        with suppress(Exception):
+            end()
+
+
+# -- of the user's -----------------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def remote(where: Remote) -> Iterator[Site]:
+    """Have the workers of a scheduler of the user's.
+
+    Raises
+    ------
+    ClusterError
+        One line: no such address or file, no encryption, or no answer within 10 s.
+    """
+    from distributed import Client
+
+    address, security = _address(where), _security(where)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # versions are compared by us
+            client = Client(address, security=security, timeout=PATIENCE, set_as_default=False, name="uavsim")
+    except (OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
+        raise ClusterError(f"the scheduler {address} does not answer within {PATIENCE:g} s ({_line(error)})") from None
+    try:
+        yield of_client(client)
+    finally:
+        with suppress(Exception):
+            client.close(timeout=ENDING)
+
+
+def of_client(client: "Client") -> Site:
+    """Have the workers of a client, which is used as it is and stays open."""
+    return Site(client, _Count(client), local=False, stop=lambda: None)
+
+
+class _Count:
+    """How many threads a client's workers have; asked now and then. While there are none, one task waits for them."""
+
+    def __init__(self, client: "Client") -> None:
+        self._client, self._known, self._asked = client, 1, -LOOK
+
+    def __call__(self) -> int:
+        if monotonic() - self._asked > LOOK:
+            with suppress(OSError, TimeoutError):
+                self._known = max(1, sum(self._client.nthreads().values()))
+            self._asked = monotonic()
+        return self._known
+
+
+def _address(where: Remote) -> str:
+    address = where.address
+    if "://" not in address and (address.endswith(".json") or os.path.exists(address)):
+        address = _of_file(address)
+    if "://" not in address:
+        address = f"tcp://{address}"
+    try:
+        parts = urlsplit(address)
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if parts.scheme not in ("tcp", "tls") or not host or not port:
+        raise ClusterError(f"the scheduler {where.address!r}: give tcp://HOST:PORT, tls://HOST:PORT or its file")
+    if parts.scheme != "tls" and not _is_loopback(host) and not where.insecure:
+        raise ClusterError(
+            f"the scheduler {address} is neither encrypted nor on this machine: whoever can reach it can run code as "
+            "you, and change results; use tls:// (docs/clusters.md), or say --insecure on a network of your own"
+        )
+    if parts.scheme == "tls" and not (where.ca and where.certificate and where.key):
+        raise ClusterError(f"the scheduler {address} needs --tls-ca, --tls-cert and --tls-key")
+    return address
+
+
+def _of_file(path: str) -> str:
+    try:
+        with Path(path).open(encoding="utf-8") as file:
+            told = json.loads(file.read(LARGEST_FILE))
+        address = told["address"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ClusterError(f"the scheduler file {path}: {_line(error)}") from None
+    if not isinstance(address, str):
+        raise ClusterError(f"the scheduler file {path}: its address is no text")
+    return address
+
+
+def _is_loopback(host: str) -> bool:
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def _security(where: Remote) -> "Security | None":
+    from distributed import Security
+
+    if not (where.ca or where.certificate or where.key):
+        return None
+    for path in (where.ca, where.certificate, where.key):
+        if path is None or not os.path.isfile(path):
+            raise ClusterError(f"TLS: {path or '--tls-ca, --tls-cert and --tls-key'}: there is no such file")
+    return Security(
+        tls_ca_file=where.ca,
+        tls_client_cert=where.certificate,
+        tls_client_key=where.key,
+        require_encryption=True,
+    )
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split())[:200] or type(error).__name__
