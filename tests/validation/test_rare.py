@@ -99,7 +99,9 @@ BETA = 4.753424  # Φ(-β) = 1e-6
 
 @pytest.mark.parametrize("d", [2, 10, 30])
 def test_a_linear_limit_of_few_inputs(d: int) -> None:
-    away, variation, covered = judged(f"linear, {d} inputs", repeat(Inputs(linear(BETA, d), d), 200), float(ndtr(-BETA)))
+    away, variation, covered = judged(
+        f"linear, {d} inputs", repeat(Inputs(linear(BETA, d), d), 200), float(ndtr(-BETA))
+    )
     assert abs(away) < 3.0
     assert variation < 0.30
     assert covered >= 0.90

@@ -15,6 +15,7 @@ from uavsim.cli.fly import fly
 from uavsim.cli.paper import paper
 from uavsim.cli.plugins import plugins
 from uavsim.cli.printed import alone
+from uavsim.cli.rare import rare
 from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
@@ -25,7 +26,7 @@ from uavsim.failure import PartError
 from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
-COMMANDS = (scenarios, fly, campaign, replay, sensors, roc, tune, survey, paper, plugins, bench)
+COMMANDS = (scenarios, fly, campaign, replay, sensors, roc, tune, rare, survey, paper, plugins, bench)
 """In the order of the help."""
 
 
@@ -67,6 +68,7 @@ def uavsim(
       uavsim sensors bmp390
       uavsim roc --detectors adaptive-cusum,multi-level-window,px4
       uavsim tune catapult --false-alarms 0.1
+      uavsim rare catapult --event false_launch
       uavsim survey fw8
       uavsim paper
       uavsim plugins

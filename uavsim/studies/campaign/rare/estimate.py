@@ -247,7 +247,7 @@ def _not_reached(steps: tuple[Step, ...], plan: Plan) -> float:
 
 
 def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
-    first, second, third = np.random.SeedSequence(seed).spawn(3)
+    first, second = np.random.SeedSequence(seed).spawn(2)
     around = problem.dimension - problem.whole
     finish = 0 < around <= shifted.MOST_INPUTS
     share = PILOT if finish else 1.0

@@ -3,10 +3,12 @@
     P = E_q[1{g(u) ≤ 0} φ(u)/q(u)],        q(u) = ε φ(u) + (1 - ε) Σ_j π_j φ(u - m_j)
 
 φ is the standard normal density of the inputs; the m_j are centres of the failures, one for each group of them, found
-by expectation maximisation with as many groups as the Bayes information criterion asks for, each chain counted once. The mirror images of the centres are looked at as well. A first round of
-samples gives weighted failures, to which the mixture of the second is fitted; that alone is counted.
+by expectation maximisation with as many groups as the Bayes information criterion asks for, each chain counted once.
+The mirror images of the centres are looked at as well. A first round of samples gives weighted failures, to which the
+mixture of the second is fitted; that alone is counted.
+
 The estimate is unbiased whatever the m_j are; how much it scatters is not known where a region of failure has been
-missed. Its share of the whole is therefore looked at before it is believed (`trusted`). Several dozen inputs are the
+missed. It is therefore held against that of subset simulation before it is believed (`trusted`). `MOST_INPUTS` are the
 most: each that plays no part adds the error of its centre to the weights.
 
 Sources: Melchers, Structural Safety 6 (1989) 3 (centres at design points); Owen & Zhou, J. Am. Stat. Assoc. 95 (2000)
@@ -90,4 +92,4 @@ def trusted(values: Floats, pilot: float, pilot_variation: float) -> bool:
     total = float(values.sum())
     if not total > 0.0 or float(values.max()) > LARGEST_SHARE * total:
         return False
-    return abs(float(np.log(values.mean() / pilot))) < 3.0 * np.sqrt(np.log1p(pilot_variation**2)) + 0.5
+    return bool(abs(float(np.log(values.mean() / pilot))) < 3.0 * np.sqrt(np.log1p(pilot_variation**2)) + 0.5)

@@ -25,14 +25,14 @@ J. Chem. Phys. 124 (2006) 024102 (flux times conditional probabilities); Cérou 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import nan, sqrt
+from math import nan
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.compiled import Compiled, compiled, jit
+from uavsim.compiled import Compiled, compiled
 from uavsim.onboard.launch import DetectorSettings, build
 from uavsim.onboard.launch.compiled import Loop
 
@@ -60,7 +60,7 @@ class NoSplittingError(ValueError):
 
 @dataclass(frozen=True)
 class Watch:
-    """A detector on its launch axis while nothing is launched: reading k is `mean[k]` + `sigma`·ξ_k, ξ_k standard normal.
+    """A detector on its launch axis while nothing is launched; it reads `mean[k]` + `sigma`·ξ_k, ξ_k standard normal.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ DISTANCE: Any = None
 TRY: Any = None
 
 
-def _try(p: Any, q: Any, x: Any, y: Any, k: int, signal: Any, rests: int, most: int, work: Any) -> int:
+def _try(p: Any, q: Any, x: Any, y: Any, k: int, signal: Any, rests: int, most: int, work: Any) -> Any:
     """Samples until the alarm if pushes are read and at last so many rests, at most `most`; else `most` + 1."""
     _, _, rate, rest, push = signal
     f, out = np.empty(1), np.empty(1, np.int64)
@@ -122,7 +122,7 @@ def _try(p: Any, q: Any, x: Any, y: Any, k: int, signal: Any, rests: int, most: 
     return most + 1
 
 
-def _distance(p: Any, q: Any, x: Any, y: Any, k: int, signal: Any, measure: Any, tried: Any) -> int:
+def _distance(p: Any, q: Any, x: Any, y: Any, k: int, signal: Any, measure: Any, tried: Any) -> Any:
     """Distance of a state from an alarm; that of (most + 1, 0) if it cannot come there in `most` samples."""
     most, table = measure
     m = TRY(p, q, x, y, k, signal, 0, most, tried)
@@ -180,8 +180,8 @@ def _enter(
 
 
 def _advance(
-    p: Any, q: Any, xs: Any, ys: Any, ks: Any, signal: Any, measure: Any, base: int, level: int, stride: int, trials: int,
-    rng: Any, xs2: Any, ys2: Any, ks2: Any,
+    p: Any, q: Any, xs: Any, ys: Any, ks: Any, signal: Any, measure: Any, base: int, level: int, stride: int,
+    trials: int, rng: Any, xs2: Any, ys2: Any, ks2: Any,
 ) -> Any:  # fmt: skip
     """Try to come from the states kept to a distance of `level` or an alarm; return successes and samples taken."""
     mean, sigma, rate, _, _ = signal
@@ -301,7 +301,6 @@ class Plan:
     levels: tuple[int, ...]
     trials: tuple[int, ...]
 
-
     @property
     def stride(self) -> int:
         """Every how many samples a distance is looked at: what has far to go comes no nearer in between."""
@@ -353,6 +352,15 @@ class Splitter:
         state = np.array(loop.x, np.float64), np.array(loop.y, np.int64)
         self._detector = loop.p, loop.q, *state
         self._signal = watch.mean, float(watch.sigma), float(watch.rate), float(watch.mean.mean()), float(watch.push)
+
+    @classmethod
+    def takes(cls, watch: Watch) -> bool:
+        """Whether a watch's detector can be split."""
+        try:
+            cls(watch)
+        except NoSplittingError:
+            return False
+        return True
 
     def plan(self, seed: np.random.SeedSequence, budget: float, runs: int) -> tuple[Plan, float]:
         """Fix by a pilot what each run does, so that all take about `budget` sequences with the pilot; return its work.
@@ -420,7 +428,8 @@ class Splitter:
         begun, work = self._loops.enter(
             *self._detector, self._signal, measure, plan.base, GATE, plan.stride, plan.paths, rng, *kept
         )
-        costs, shares, total = [work / plan.paths], [], work
+        costs, total = [work / plan.paths], work
+        shares: list[float] = []
         excursions = begun / plan.paths
         probability, count = excursions, min(begun, KEPT)
         for level, trials in zip(plan.levels, plan.trials, strict=True):

@@ -178,7 +178,7 @@ def _chains(
 
 def _variation(below: NDArray[np.bool_], share: float) -> float:
     """Coefficient of variation of a level's share, from indicators by chain and step."""
-    chains, steps = below.shape
+    steps = below.shape[1]
     n = below.size
     variance = share * (1.0 - share)
     if variance == 0.0:
