@@ -15,6 +15,7 @@ from uavsim.cli.fly import fly
 from uavsim.cli.paper import paper
 from uavsim.cli.plugins import plugins
 from uavsim.cli.printed import alone
+from uavsim.cli.rare import rare
 from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
@@ -29,7 +30,7 @@ from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
 COMMANDS = (
-    *(scenarios, fly, campaign, sweep, sensitivity, verify, replay, sensors),
+    *(scenarios, fly, campaign, sweep, sensitivity, verify, rare, replay, sensors),
     *(roc, tune, survey, paper, plugins, bench),
 )
 """In the order of the help."""
@@ -72,11 +73,13 @@ def uavsim(
       uavsim sweep catapult --vary air_data.total.noise_scale=0.5,1,2,4 --runs 50
       uavsim sensitivity dispersed --runs 1000
       uavsim verify dispersed --requirements small-uav
+      uavsim rare catapult --event false_launch
       uavsim replay output/catapult-7
       uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
       uavsim sensors bmp390
       uavsim roc --detectors adaptive-cusum,multi-level-window,px4
       uavsim tune catapult --false-alarms 0.1
+      uavsim rare catapult --event false_launch
       uavsim survey fw8
       uavsim paper
       uavsim plugins

@@ -33,7 +33,8 @@ from uavsim.studies.quantiles import quantile_band
 
 if TYPE_CHECKING:
     import pandas as pd
-    from distributed import Client
+
+    from uavsim.studies.engine import Client
 
 Array = NDArray[np.float64]
 

@@ -25,7 +25,8 @@ from uavsim.studies.engine import Crew, Left, engine
 
 if TYPE_CHECKING:
     import pandas as pd
-    from distributed import Client
+
+    from uavsim.studies.engine import Client
 
 BUDGET = 3000  # flights: P ≥ 0.995 is decided within it in 93 of 100 runs where it is 0.999
 ALWAYS = (OUTCOME, "index", "flight.duration", "launch.release_time", "launch.true_time")
