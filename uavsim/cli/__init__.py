@@ -79,7 +79,6 @@ def uavsim(
       uavsim sensors bmp390
       uavsim roc --detectors adaptive-cusum,multi-level-window,px4
       uavsim tune catapult --false-alarms 0.1
-      uavsim rare catapult --event false_launch
       uavsim survey fw8
       uavsim paper
       uavsim plugins

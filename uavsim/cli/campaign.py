@@ -35,11 +35,8 @@ from uavsim.cli.printed import Json, document
 from uavsim.studies.campaign.keep import DEFAULT
 
 if TYPE_CHECKING:
-    from uavsim.scenario import Scenario
     from uavsim.studies.campaign.keep import Keep
     from uavsim.studies.campaign.plan import Plan
-
-SAMPLINGS = ("random", "latin-hypercube", "sobol")
 
 
 def campaign(
@@ -75,6 +72,7 @@ def campaign(
     Example: uavsim campaign dispersed --runs 1000 --out output/dispersed-1000 --resume
     """
     from uavsim.scenario import load_scenario
+    from uavsim.studies.campaign.campaign import sampled
 
     plug_in(plugin)
     means = Means(workers, scheduler, tls_ca, tls_cert, tls_key, insecure, dashboard, flight_limit)
@@ -82,28 +80,13 @@ def campaign(
     rule = keep_rule(keep)
     with user_input():
         loaded = load_scenario(scenario, overrides=settings or (), seed=seed, seed_name="--seed")
-        plan = plan_for(loaded, runs, sampling)
+        plan = sampled(loaded, runs, sampling)
         first = plan.flight(0)
     if dry_run:
         _tell_cost(plan, rule, ready(first, settings), means)
         return
     _fly(plan, rule, means, out=out, given=settings, resume=resume, overwrite=overwrite, plots=not no_plots,
          as_json=as_json)  # fmt: skip
-
-
-def plan_for(scenario: "Scenario", runs: int, sampling: str) -> "Plan":
-    """Return what flies.
-
-    Raises
-    ------
-    ValueError
-        No such sampling, or a number of flights that it does not have.
-    """
-    from uavsim.studies.campaign.plan import Design, Random
-
-    if sampling not in SAMPLINGS:
-        raise typer.BadParameter(f"{sampling[:40]!r}: must be one of {', '.join(SAMPLINGS)}", param_hint="--sampling")
-    return Random(scenario, runs) if sampling == "random" else Design(scenario, runs, sampling)
 
 
 def _fly(
