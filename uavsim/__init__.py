@@ -23,8 +23,18 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 __all__ = [
-    *("Flight", "Scenario", "__version__", "airdata", "campaign", "fly", "load", "onboard", "plugins", "sweep"),
-    *("testing", "verify"),
+    "Flight",
+    "Scenario",
+    "__version__",
+    "airdata",
+    "campaign",
+    "fly",
+    "load",
+    "onboard",
+    "plugins",
+    "sweep",
+    "testing",
+    "verify",
 ]
 
 _HOMES = {
