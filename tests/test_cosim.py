@@ -1,11 +1,13 @@
 """The loop on real flights: one seed is one flight, onboard sees readings and nothing else, order and time hold."""
 
+import gc
 import hashlib
 import itertools
 import json
 import math
 import subprocess
 import sys
+import weakref
 from collections.abc import Callable
 from dataclasses import replace
 from inspect import signature
@@ -794,6 +796,22 @@ def test_a_noisier_head_is_believed_to_be_noisier() -> None:
     plain, scaled = (resting(f"air_data.{c}.noise_scale={s}", wait=2.0) for c, s in (("total", 1), ("total", 5)))
     wide = [f.estimate["airspeed_sd"].iloc[-25:].mean() for f in (plain, scaled)]
     assert wide[1] > wide[0]
+
+
+@pytest.mark.parametrize("scenario", ["catapult", "gusty"])
+def test_a_plant_goes_with_its_flight_and_does_not_wait_for_the_collector(scenario: str) -> None:
+    """Its record takes 300 B a step: flights of a campaign that are over must not add up."""
+    simulation = Cosimulation(short("duration=4.5", scenario=scenario))
+    plant = weakref.ref(simulation.plant)
+    gc.collect()
+    gc.disable()
+    try:
+        flight = flown(simulation)
+        del simulation
+        assert plant() is None
+    finally:
+        gc.enable()
+    assert flight.truth["t"].iloc[-1] == 4.5
 
 
 def test_force_of_the_launcher_is_a_key() -> None:

@@ -19,7 +19,6 @@ from uavsim.cli.flights import (
     TlsCa,
     TlsCert,
     TlsKey,
-    Watch,
     Workers,
     before_of,
     campaign_folder,
@@ -29,6 +28,7 @@ from uavsim.cli.flights import (
     say_unfinished,
 )
 from uavsim.cli.printed import Json, document
+from uavsim.cli.progress import FlightsBar
 from uavsim.studies.campaign.keep import DEFAULT
 
 if TYPE_CHECKING:
@@ -138,8 +138,8 @@ def _flown(record: "Record", means: Means, keep: "Keep", confidence: float) -> "
     from uavsim.studies.campaign.verify import fly_until_decided
 
     try:
-        with Watch(record.plan.scenario.name) as progress, means.crew() as crew, user_input():
-            return fly_until_decided(record, crew, keep, confidence, limit=means.limit, progress=progress)
+        with FlightsBar(f"flying {record.plan.scenario.name}") as bar, means.crew() as crew, user_input():
+            return fly_until_decided(record, crew, keep, confidence, limit=means.limit, progress=bar.flew)
     except KeyboardInterrupt:
         if not record.finished:
             raise

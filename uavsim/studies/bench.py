@@ -14,6 +14,7 @@ Of that, what would run on the aircraft: detector and airspeed estimator over a 
 single steps, each with the clock's own cost in it.
 """
 
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from statistics import median
@@ -70,7 +71,7 @@ def measure_onboard(scenario: Scenario) -> OnboardCost:
     return OnboardCost(mean=1e6 * min(whole) / len(forces), p99=1e6 * min(single), steps=len(forces))
 
 
-def _rows(flat: list[float], width: int) -> list[tuple[float, ...]]:
+def _rows(flat: "array[float]", width: int) -> list[tuple[float, ...]]:
     return list(zip(*(flat[i::width] for i in range(width)), strict=True))
 
 

@@ -6,6 +6,7 @@ extreme quantiles no such interval exists; then the band is open on that side.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,7 @@ def quantile_band(sample: NDArray[np.float64], probability: float, confidence: f
     )
 
 
+@cache
 def quantile_ranks(n: int, probability: float, confidence: float = 0.95) -> tuple[int, int]:
     """Ranks, 1 … n, of the order statistics that bound a quantile; 0 and n + 1 where there is no bound.
 

@@ -185,6 +185,24 @@ def _fly(scenario: Scenario, index: int) -> _Flight:
     return _Flight(rows, first, drawn.release_time, exit_time, push, truth)
 
 
+def uncommanded(scenario: Scenario, index: int = 0) -> tuple[Array, float, float]:
+    """Fly one flight without a command.
+
+    Returns
+    -------
+    tuple
+        True force from `WAIT` before its release on, shape (n, 3), m/s²; steps a second, Hz; and when the stroke ends,
+        s after the first of them.
+
+    Raises
+    ------
+    ValueError
+        If the catapult does not move the aircraft.
+    """
+    flight, rate = _fly(scenario, index), scenario.plant.step_rate
+    return np.array(flight.force), float(rate), flight.truth.end - flight.first / rate
+
+
 def _feel(scenario: Scenario, flight: _Flight, streams: Streams) -> tuple[Array, float, float, LaunchTruth]:
     """Let one unit feel a flight; return its readings, the time of the first, its rate, and the truth, s."""
     settings, rate = scenario.accelerometer, scenario.plant.step_rate

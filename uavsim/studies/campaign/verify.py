@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from uavsim.requirements import OUTCOME, Requirement
 from uavsim.scenario import Scenario, load_scenario
-from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan
+from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan, keep_later
 from uavsim.studies.campaign.evidence import HOUR
 from uavsim.studies.campaign.keep import Keep, keep_of
 from uavsim.studies.campaign.outlook import Outlook, outlook
@@ -25,7 +25,8 @@ from uavsim.studies.engine import Crew, Left, engine
 
 if TYPE_CHECKING:
     import pandas as pd
-    from distributed import Client
+
+    from uavsim.studies.engine import Client
 
 BUDGET = 3000  # flights: P ≥ 0.995 is decided within it in 93 of 100 runs where it is 0.999
 ALWAYS = (OUTCOME, "index", "flight.duration", "launch.release_time", "launch.true_time")
@@ -185,6 +186,7 @@ def fly_until_decided(
         before = look
     if not len(seen):
         raise ValueError(f"no flight is finished: {flown.left[0].why}")
+    keep_later(record, crew, keep, limit)
     found = judge(requirements, seen, confidence)
     record.describe(complete=not flown.left, wall_time=spent, left=flown.left)
     return Verified(found, scenario, _first(frame(record.folder), found.runs), flown.left)
