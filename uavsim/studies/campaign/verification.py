@@ -165,7 +165,7 @@ def verdicts(requirements: Sequence[Requirement], flights: "pd.DataFrame", confi
     ValueError
         As `judge`.
     """
-    _check_confidence(confidence)
+    check_confidence(confidence)
     if not requirements:
         raise ValueError("there is no requirement to judge")
     error, family = 1.0 - confidence, len(requirements)
@@ -211,7 +211,14 @@ def schedule(requirements: Sequence[Requirement], confidence: float, budget: int
     return (*kept, budget)
 
 
-def _check_confidence(confidence: float) -> None:
+def check_confidence(confidence: float) -> None:
+    """Refuse what is no confidence.
+
+    Raises
+    ------
+    ValueError
+        It does not lie between 0.5 and 1.
+    """
     if not 0.5 < confidence < 1.0:
         raise ValueError(f"confidence = {confidence:g}: must lie between 0.5 and 1")
 

@@ -5,22 +5,22 @@ the verdict depends on the scenario, the seed, the confidence and the budget alo
 the order in which they finish, nor on whether the run was interrupted and taken up again.
 """
 
-import tempfile
-from collections.abc import Sequence
-from contextlib import nullcontext
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from uavsim.folders import StandingPlace
 from uavsim.requirements import OUTCOME, Requirement
-from uavsim.scenario import Scenario, load_scenario
-from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan, keep_later
+from uavsim.scenario import Scenario
+from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan, given_scenario, keep_later
 from uavsim.studies.campaign.evidence import HOUR
 from uavsim.studies.campaign.keep import Keep, keep_of
 from uavsim.studies.campaign.outlook import Outlook, outlook
 from uavsim.studies.campaign.plan import Plan, Random
-from uavsim.studies.campaign.record import Record, frame
-from uavsim.studies.campaign.verification import Verification, judge, schedule, verdicts
+from uavsim.studies.campaign.record import ABOUT, Record, frame, taken_up
+from uavsim.studies.campaign.verification import Verification, check_confidence, judge, schedule, verdicts
 from uavsim.studies.engine import Crew, Left, engine
 
 if TYPE_CHECKING:
@@ -60,50 +60,72 @@ class Verified:
 
 
 def verify(
-    scenario: "str | Path | Scenario" = "catapult",
+    scenario: "str | Path | Scenario" = "dispersed",
     *,
     runs: int = BUDGET,
     confidence: float = 0.95,
     requirements: "Sequence[Requirement] | str | Path | None" = None,
     seed: int | None = None,
+    overrides: Iterable[str] = (),
     out: "str | Path | None" = None,
+    resume: bool = False,
     workers: int | None = None,
     client: "Client | None" = None,
+    progress: Progress | None = None,
 ) -> Verified:
     """Test a scenario's requirements statistically.
 
     Parameters
     ----------
     scenario
-        A packaged name, a path, or a scenario.
+        A packaged name, the path of a TOML file, or a `Scenario`.
     runs
-        Flights at most.
+        Flights at most; fewer if all is decided.
     confidence
         Of each statement; 0.5 … 1 exclusive.
     requirements
         Instead of the scenario's own: requirements, the name of a pack or its path.
     seed
         Instead of the scenario's own.
+    overrides
+        ``KEY=VALUE`` each; only with a name or path.
     out
-        Folder of a campaign to write the flights into; None: none is kept.
+        Folder of a campaign to write the flights into; None: none is kept but as rows of what is returned.
+    resume
+        Go on with what `out` holds.
     workers
-        Processes of this machine; None: one a processor, 0: this one.
+        Processes of this machine; None: one a processor; 0: all is flown in this one.
     client
-        A client of `distributed` that flies instead; used as it is.
+        A client of `distributed` that flies instead; used as it is, and left open.
+    progress
+        Called as flights are finished.
+
+    Returns
+    -------
+    Verified
+        Verdicts, and a frame with a row a flight.
 
     Raises
     ------
     ValueError
-        One line: what cannot be verified, and why.
+        One line: what cannot be verified or taken up, and why.
+    OSError
+        `out` is not empty, or cannot be written.
+    ClusterError
+        The workers cannot be used.
     """
-    loaded = load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
-    asked = asking(loaded if seed is None else loaded.with_seed(seed), requirements)
-    plan = Random(asked, runs)
-    place = tempfile.TemporaryDirectory() if out is None else nullcontext(str(out))
-    with place as folder, engine(workers=workers, client=client) as crew:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        record = Record(Path(folder), plan, keep="none")
-        return fly_until_decided(record, crew, keep_of("none", ()), confidence)
+    if runs < 1:
+        raise ValueError(f"runs = {runs}: must be at least 1")
+    check_confidence(confidence)
+    plan = Random(asking(given_scenario(scenario, seed=seed, overrides=overrides), requirements), runs)
+    with (
+        TemporaryDirectory(prefix="uavsim-") as passing,
+        StandingPlace(passing if out is None else out, resume=resume) as place,
+        engine(workers=workers, client=client) as crew,
+    ):
+        known = resume and (place.folder / ABOUT).is_file()
+        record = Record(place.folder, plan, keep="none", before=taken_up(place.folder, plan) if known else None)
+        return fly_until_decided(record, crew, keep_of("none", ()), confidence, progress=progress)
 
 
 def asking(scenario: Scenario, requirements: "Sequence[Requirement] | str | Path | None" = None) -> Scenario:
