@@ -10,6 +10,7 @@ from uavsim.studies.campaign.evidence import EVERY_SHARE, HOUR, Events, no_fligh
 from uavsim.studies.campaign.sequential import Exposure, Flights
 
 BETTER = 5.0  # truth that is stated: so many times fewer events than the bound allows
+FURTHEST = 32.0  # events that are expected by the horizon of the first look; -ln(0.8 α) of them come before it
 EFFECT = 0.5  # the same of means: standard deviations of one flight within the bound
 
 
@@ -92,7 +93,7 @@ def _outlook_of_events(requirement: Requirement, error: float, budget: int, trut
     )
     found = sequential.chance(few, many, np.array([1.0 - q, q]), budget)
     met, not_met = (found.few, found.many) if event.met_if_few else (found.many, found.few)
-    least = int(few[0]) if few.size else None
+    least = int(sequential.few_times(Flights(event.bound), error, sequential.horizon_of(FURTHEST / event.bound))[0])
     if not event.met_if_few:
         least = int(np.flatnonzero(many >= np.arange(1, many.size + 1))[0]) + 1
     return Outlook(said, met, not_met, found.flights, found.median, least)
