@@ -108,13 +108,13 @@ def both(table: Table, name: str, low: int, high: int) -> None:
 
 @pytest.mark.parametrize("share", [0.005, 0.05, 0.4])
 def test_sequential_bounds_of_a_probability(table: Table, share: float) -> None:
-    """A bound errs where the test of the truth decides wrongly; 40 intervals are held against that within 1 %."""
+    """A bound errs where the test of the truth decides wrongly; 10 intervals are held against that within 1 %."""
     n, rng, low, high = 2000, np.random.default_rng(6), 0, 0
     for i in range(REPETITIONS):
         events = rng.random(n) < share
         below, above = sequential.event_levels(events, share, (ERROR,))
         low, high = low + (above <= ERROR), high + (below <= ERROR)
-        if i < 40:
+        if i < 10:
             bounds = sequential.event_interval(events, ERROR)
             assert bounds[0] > 0.99 * share if above <= ERROR else bounds[0] < 1.01 * share
             assert bounds[1] < 1.01 * share if below <= ERROR else bounds[1] > 0.99 * share
