@@ -32,7 +32,6 @@ from uavsim.studies.quantiles import quantile_band
 
 if TYPE_CHECKING:
     import pandas as pd
-    from distributed import Client
 
 Array = NDArray[np.float64]
 
@@ -339,7 +338,7 @@ def sweep(
     wanted: float = WANTED,
     confidence: float = CONFIDENCE,
     workers: int | None = None,
-    client: "Client | None" = None,
+    client: Any = None,
     out: str | Path | None = None,
 ) -> Sweep:
     """Fly a scenario over a grid of assumptions, the same flights in every cell.
