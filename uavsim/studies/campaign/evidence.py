@@ -81,8 +81,15 @@ class Events:
         return Events(~self.events, 1.0 - self.bound, not self.met_if_few, self.without_value)
 
 
-def seen(requirement: Requirement, flights: "pd.DataFrame", error: float, family: int) -> Seen:
-    """Hold flights against one requirement, one of a family of so many.
+def p_values(requirement: Requirement, flights: "pd.DataFrame", levels: tuple[float, ...]) -> tuple[float, float]:
+    """Smallest levels at which flights have shown that a requirement is met, and that it is not; 1 where none has.
+
+    Parameters
+    ----------
+    requirement, flights
+        As `verification.judge` has them.
+    levels
+        Errors to try, the largest first.
 
     Raises
     ------
@@ -90,36 +97,55 @@ def seen(requirement: Requirement, flights: "pd.DataFrame", error: float, family
         No flight has such a number.
     """
     if requirement.kind == "mean":
-        return _seen_mean(requirement, flights, error, family)
+        below, above = _mean_levels(_values(requirement, flights), float(requirement.bound or 0.0), levels)
+        return (below, above) if requirement.is_upper else (above, below)
     if requirement.kind == "rate_per_hour":
-        return _seen_rate(requirement, flights, error, family)
+        below, above = sequential.rate_levels(*counted(requirement, flights), float(requirement.bound or 0.0), levels)
+        return (below, above) if requirement.is_upper else (above, below)
+    found = events_of(requirement, flights)
+    if requirement.kind == "every":  # one failure is enough; without one the chance of that tells
+        return (1.0, 0.0) if found.events.any() else (EVERY_SHARE**found.events.size, 1.0)
+    below, above = sequential.event_levels(found.events, found.bound, levels)
+    return (below, above) if found.met_if_few else (above, below)
+
+
+def _mean_levels(values: Floats, bound: float, levels: tuple[float, ...]) -> tuple[float, float]:
+    if np.isnan(values).any():
+        return 1.0, 1.0
+    bounds = {level: mean_interval(values, level) for level in levels}
+    below = min((level for level in levels if bounds[level][1] <= bound), default=1.0)
+    return below, min((level for level in levels if bounds[level][0] >= bound), default=1.0)
+
+
+def holm_levels(error: float, family: int) -> tuple[float, ...]:
+    """Errors that Holm's procedure asks of a family of so many, the largest first."""
+    return tuple(error / (i + 1) for i in range(family))
+
+
+def seen(requirement: Requirement, flights: "pd.DataFrame", error: float, family: int) -> Seen:
+    """Say what flights show of one requirement, one of a family of so many.
+
+    Raises
+    ------
+    ValueError
+        No flight has such a number.
+    """
+    more = MEAN_EVIDENCE if requirement.kind == "mean" else EVIDENCE
+    levels = tuple(sorted({*holm_levels(error, family), *more}, reverse=True))
+    p = p_values(requirement, flights, levels)
+    if requirement.kind == "mean":
+        return _seen_mean(requirement, flights, error, p)
+    if requirement.kind == "rate_per_hour":
+        return _seen_rate(requirement, flights, error, p)
     found = events_of(requirement, flights)
     if requirement.kind == "every":
-        return _seen_every(found, error)
-    below, above = sequential.event_levels(found.events, found.bound, _levels(error, family))
-    p_met, p_not_met = (below, above) if found.met_if_few else (above, below)
-    estimate, low, high = (
-        _of_probability(requirement, found, error)
-        if requirement.kind == "probability"
-        else _of_quantile(requirement, flights, error)
-    )
-    method = "exact binomial, sequential" if requirement.kind == "probability" else "order statistics, sequential"
-    return Seen(
-        estimate,
-        low,
-        high,
-        float(requirement.bound or 0.0),
-        p_met,
-        p_not_met,
-        found.without_value,
-        method,
-        *_planned_events(found, error),
-    )
-
-
-def _levels(error: float, family: int) -> tuple[float, ...]:
-    """Errors that are tried: those of Holm's procedure, and a few to tell how strong the evidence is."""
-    return tuple(sorted({*(error / (i + 1) for i in range(family)), *EVIDENCE}, reverse=True))
+        return _seen_every(found, error, p)
+    if requirement.kind == "quantile":
+        figures, method = _of_quantile(requirement, flights, error), "order statistics, sequential"
+    else:
+        figures, method = _of_probability(requirement, found, error, p), "exact binomial, sequential"
+    bound = float(requirement.bound or 0.0)
+    return Seen(*figures, bound, *p, found.without_value, method, *_planned_events(found, error))
 
 
 def _values(requirement: Requirement, flights: "pd.DataFrame") -> Floats:
@@ -151,7 +177,7 @@ def events_of(requirement: Requirement, flights: "pd.DataFrame") -> Events:
     return Events(~came, 1.0 - wanted, True, int(missing.sum()))
 
 
-def _seen_every(seen: Events, error: float) -> Seen:
+def _seen_every(seen: Events, error: float, p: tuple[float, float]) -> Seen:
     """Flights without a failure; the first failure ends it."""
     n, failed = seen.events.size, int(seen.events.sum())
     low, high = sequential.event_interval(~seen.events, error) if failed else (error ** (1.0 / max(n, 1)), 1.0)
@@ -161,8 +187,7 @@ def _seen_every(seen: Events, error: float) -> Seen:
         low if n else -np.inf,
         high,
         EVERY_SHARE,
-        1.0 if failed else EVERY_SHARE**n,
-        0.0 if failed else 1.0,
+        *p,
         seen.without_value,
         "flights without a failure",
         enough,
@@ -171,10 +196,17 @@ def _seen_every(seen: Events, error: float) -> Seen:
     )
 
 
-def _of_probability(requirement: Requirement, seen: Events, error: float) -> tuple[float | None, float, float]:
+def _of_probability(
+    requirement: Requirement, seen: Events, error: float, p: tuple[float, float] = (1.0, 1.0)
+) -> tuple[float | None, float, float]:
+    """Estimate and bounds; where a test has decided, the bound does not lie on the other side by a rounding."""
     events = seen.events if requirement.at_least is None else ~seen.events
     estimate = float(events.mean()) if events.size else None
-    return (estimate, *sequential.event_interval(events, error))
+    low, high = sequential.event_interval(events, error)
+    asked, is_above = float(requirement.bound or 0.0), p[1 if requirement.is_upper else 0] <= error
+    if is_above:
+        return estimate, max(low, asked), high
+    return estimate, low, min(high, asked) if p[0 if requirement.is_upper else 1] <= error else high
 
 
 def _of_quantile(requirement: Requirement, flights: "pd.DataFrame", error: float) -> tuple[float | None, float, float]:
@@ -190,17 +222,12 @@ def _ranked(requirement: Requirement, flights: "pd.DataFrame") -> Floats:
     return ranked
 
 
-def _seen_mean(requirement: Requirement, flights: "pd.DataFrame", error: float, family: int) -> Seen:
+def _seen_mean(requirement: Requirement, flights: "pd.DataFrame", error: float, p: tuple[float, float]) -> Seen:
     values, bound = _values(requirement, flights), float(requirement.bound or 0.0)
     missing = int(np.isnan(values).sum())
     if missing:
         return Seen(None, -np.inf, np.inf, bound, 1.0, 1.0, missing, "none: flights without a value", None, None, None)
-    levels = tuple(sorted({*(error / (i + 1) for i in range(family)), *MEAN_EVIDENCE}, reverse=True))
-    bounds = {level: mean_interval(values, level) for level in levels}
-    is_below = [level for level in levels if bounds[level][1] <= bound]
-    is_above = [level for level in levels if bounds[level][0] >= bound]
-    low, high, method = bounds[error]
-    right, wrong = (is_below, is_above) if requirement.is_upper else (is_above, is_below)
+    low, high, method = mean_interval(values, error)
     distance = (float(values.mean()) - bound) * (-1.0 if requirement.is_upper else 1.0) if values.size else 0.0
     planned = _planned_mean(distance / values.std(ddof=1), error) if values.size > 1 and np.ptp(values) > 0.0 else None
     return Seen(
@@ -208,8 +235,7 @@ def _seen_mean(requirement: Requirement, flights: "pd.DataFrame", error: float, 
         low,
         high,
         bound,
-        min(right, default=1.0),
-        min(wrong, default=1.0),
+        *p,
         0,
         method,
         planned if distance > 0.0 else None,
@@ -228,19 +254,16 @@ def mean_interval(values: Floats, level: float) -> tuple[float, float, str]:
     return low, high, method
 
 
-def _seen_rate(requirement: Requirement, flights: "pd.DataFrame", error: float, family: int) -> Seen:
+def _seen_rate(requirement: Requirement, flights: "pd.DataFrame", error: float, p: tuple[float, float]) -> Seen:
     counts, hours = counted(requirement, flights)
     bound, total = float(requirement.bound or 0.0), float(hours.sum())
-    below, above = sequential.rate_levels(counts, hours, bound, _levels(error, family))
     lows, highs = sequential.rate_interval(counts, hours, error)
-    p_met, p_not_met = (below, above) if requirement.is_upper else (above, below)
     return Seen(
         float(counts.sum()) / total if total > 0.0 else None,
         float(lows[-1]) if lows.size else 0.0,
         float(highs[-1]) if highs.size else np.inf,
         bound,
-        p_met,
-        p_not_met,
+        *p,
         0,
         "exact Poisson, sequential",
         *_planned_rate(requirement, counts, hours, error),
@@ -380,7 +403,7 @@ def _seen_briefly(requirement: Requirement, flights: "pd.DataFrame", error: floa
     if requirement.kind == "probability":
         return _of_probability(requirement, events_of(requirement, flights), error)
     if requirement.kind == "every":
-        seen = _seen_every(events_of(requirement, flights), error)
+        seen = _seen_every(events_of(requirement, flights), error, (1.0, 1.0))
         return seen.estimate, seen.low, seen.high
     if requirement.kind == "mean":
         values = _values(requirement, flights)

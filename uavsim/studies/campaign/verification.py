@@ -37,7 +37,7 @@ import numpy as np
 
 from uavsim.requirements import Requirement
 from uavsim.studies.campaign import sequential
-from uavsim.studies.campaign.evidence import EVERY_SHARE, no_flights, seen
+from uavsim.studies.campaign.evidence import EVERY_SHARE, holm_levels, no_flights, p_values, seen
 from uavsim.studies.campaign.sequential import Flights
 
 if TYPE_CHECKING:
@@ -147,23 +147,36 @@ def judge(requirements: Sequence[Requirement], flights: "pd.DataFrame", confiden
     ValueError
         If there is no requirement, no column for one, or the confidence is no such number.
     """
-    _check_confidence(confidence)
-    if not requirements:
-        raise ValueError("there is no requirement to judge")
+    words = verdicts(requirements, flights, confidence)
     error = 1.0 - confidence
     found = [seen(one, flights, error, len(requirements)) for one in requirements]
-    met, not_met = [one.p_met for one in found], [one.p_not_met for one in found]
-    all_met = all(p <= error for p in met)
-    single_met, single_not = holm(met, error), holm(not_met, error)
-    words: list[Word] = []
-    for yes, no in zip(single_met, single_not, strict=True):
-        right = yes or all_met
-        words.append("undecided" if right == no else "met" if right else "not met")
     judgements = tuple(
         Judgement(requirement, word, *one.figures, *one.plan(word))
         for requirement, word, one in zip(requirements, words, found, strict=True)
     )
     return Verification(judgements, len(flights), confidence)
+
+
+def verdicts(requirements: Sequence[Requirement], flights: "pd.DataFrame", confidence: float = 0.95) -> list[Word]:
+    """The verdicts alone, as `judge` has them: for looks on the way.
+
+    Raises
+    ------
+    ValueError
+        As `judge`.
+    """
+    _check_confidence(confidence)
+    if not requirements:
+        raise ValueError("there is no requirement to judge")
+    error, family = 1.0 - confidence, len(requirements)
+    found = [p_values(one, flights, holm_levels(error, family)) for one in requirements]
+    met, not_met = [p for p, _ in found], [p for _, p in found]
+    all_met = all(p <= error for p in met)
+    words: list[Word] = []
+    for yes, no in zip(holm(met, error), holm(not_met, error), strict=True):
+        right = yes or all_met
+        words.append("undecided" if right == no else "met" if right else "not met")
+    return words
 
 
 def holm(p_values: Sequence[float], error: float) -> list[bool]:

@@ -6,7 +6,7 @@ the order in which they finish, nor on whether the run was interrupted and taken
 """
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,7 +20,7 @@ from uavsim.studies.campaign.keep import Keep, keep_of
 from uavsim.studies.campaign.outlook import Outlook, outlook
 from uavsim.studies.campaign.plan import Plan, Random
 from uavsim.studies.campaign.record import Record, frame
-from uavsim.studies.campaign.verification import Verification, judge, schedule
+from uavsim.studies.campaign.verification import Verification, judge, schedule, verdicts
 from uavsim.studies.engine import Crew, Left, engine
 
 if TYPE_CHECKING:
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
 BUDGET = 3000  # flights: P ≥ 0.995 is decided within it in 93 of 100 runs where it is 0.999
 ALWAYS = (OUTCOME, "index", "flight.duration", "launch.release_time", "launch.true_time")
-Looked = Callable[[Verification], None]
-"""Called after each look."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +154,6 @@ def fly_until_decided(
     *,
     limit: float | None = None,
     progress: Progress | None = None,
-    looked: Looked | None = None,
 ) -> Verified:
     """Fly from look to look until each requirement of a record's scenario is decided or its plan ends.
 
@@ -174,8 +171,6 @@ def fly_until_decided(
         Time on a clock that one flight may take, s.
     progress
         Called as flights are finished.
-    looked
-        Called after each look.
     """
     plan = record.plan
     scenario, requirements = plan.scenario, plan.scenario.requirements
@@ -185,15 +180,14 @@ def fly_until_decided(
         flown = fly_plan(record, crew, keep, positions=range(before, look), limit=limit, progress=progress)
         spent += flown.wall_time
         seen = _first(frame(record.folder, columns), look)
-        found = judge(requirements, seen, confidence) if len(seen) else None
-        if found is not None and looked is not None:
-            looked(found)
-        if found is None or found.decided or flown.left or look == plan.size:
+        decided = len(seen) > 0 and "undecided" not in verdicts(requirements, seen, confidence)
+        if decided or flown.left or look == plan.size:
             break
         before = look
-    if found is None:
+    if not len(seen):
         raise ValueError(f"no flight is finished: {flown.left[0].why}")
     keep_later(record, crew, keep, limit)
+    found = judge(requirements, seen, confidence)
     record.describe(complete=not flown.left, wall_time=spent, left=flown.left)
     return Verified(found, scenario, _first(frame(record.folder), found.runs), flown.left)
 
