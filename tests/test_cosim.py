@@ -107,6 +107,30 @@ def test_the_same_seed_is_the_same_flight_in_another_process(scenario: str) -> N
     assert json.loads(other.stdout) == json.loads(json.dumps([flight.events, flight.score, digests]))
 
 
+THREADS = """
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from uavsim.cosim import flown
+from uavsim.scenario import load_scenario
+sys.setswitchinterval(1e-4)
+scenarios = [load_scenario(name, overrides=["duration=4.5"]) for name in ("catapult", "gusty")] * 2
+alone = [flown(scenario) for scenario in scenarios[:2]] * 2
+with ThreadPoolExecutor(len(scenarios)) as threads:
+    together = list(threads.map(flown, scenarios))
+for one, other in zip(alone, together, strict=True):
+    assert one.events == other.events and one.score == other.score
+    assert all(table.equals(other.tables[name]) for name, table in one.tables.items())
+print("the same")
+"""
+
+
+def test_flights_in_several_threads_are_what_each_is_alone_and_the_threads_ends_are_harmless() -> None:
+    """JSBSim has a logger for each thread and lets go of it when that ends, without the interpreter's lock."""
+    found = subprocess.run([sys.executable, "-c", THREADS], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stdout) == (0, "the same\n"), found.stderr
+
+
 def test_another_flight_before_it_changes_nothing(launch: Flight) -> None:
     """No state is left in the process: two flights that advance by turns are what each is alone."""
     one, other = Cosimulation(short()), Cosimulation(short(seed=2, scenario="gusty"))

@@ -31,6 +31,7 @@ from uavsim.scenario import Scenario, load_scenario
 from uavsim.spread.correlated import correlated, factor
 from uavsim.spread.distribution import Distribution
 from uavsim.spread.settings import Correlation
+from uavsim.studies.trials import Flown
 
 RARE = 1e-4  # probability of a test that fails by chance, with another seed
 FRICTION = {"key": "launcher.friction", "distribution": "uniform", "low": 0.0, "high": 0.1}
@@ -555,3 +556,15 @@ def test_every_preset_of_a_pressure_sensor_can_be_drawn() -> None:
     choice = {"key": "air_data.total.preset", "distribution": "choice", "values": parts}
     found = sample(scenario(choice), 100)["air_data.total.preset"]
     assert set(found) == set(parts)
+
+
+def test_launches_for_detectors_are_drawn_as_flights_are() -> None:
+    """The studies of detection fly few launches; each is the flight of its number."""
+    stroke = {"key": "launcher.stroke", "distribution": "uniform", "low": 3.0, "high": 6.0}
+    found = scenario(stroke, duration=6.0)
+    launches = Flown(found, flights=2)
+    read = launches.read(seed=4, first=0, count=2)
+    for index, truth in enumerate(read.truths):
+        way = float(drawn(found.with_seed(4), index)["launcher.stroke"])
+        run = math.sqrt(2.0 * way / truth.peak)  # all of the push from the start
+        assert 1.0 < (truth.end - truth.onset) / run < 1.4  # it rises and falls, and the slope is against it

@@ -24,6 +24,7 @@ def catapult() -> Scenario:
         ("launcher.peak_specific_force_g=0.5x,1x,2x", (4.0, 8.0, 16.0)),
         ("launcher.stroke=0.5x:1.5x:3", (2.6, 5.2, 7.8)),
         ("air_data.position=0.5x,1x", ([0.325, 0.0, 0.0], [0.65, 0.0, 0.0])),
+        ("air_data.position[0]=0.5x,1x", (0.325, 0.65)),
         ("plant.step_rate=1000:2000:2", (1000, 2000)),
         ("plant.step_rate=1x,2x", (1000, 2000)),
         ("detector.kind=px4,inav", ("px4", "inav")),
@@ -65,6 +66,8 @@ def test_values_are_read(catapult: Scenario, text: str, choices: tuple[Any, ...]
         (("accelerometer.preset=1x,2x",), "there are no factors"),
         (("vibration.spectra=1x,2x",), "there are no factors"),
         (("air_data.total.normal=1x,2x",), "sets no value"),
+        (("air_data.position[3]=1,2",), "air_data.position has 3 entries"),
+        (("launcher.stroke[0]=1,2",), "launcher.stroke is no list"),
         (("seed=1,2",), "cannot be varied"),
         (("requirements=[],[]",), "cannot be varied"),
         (("launcher.stroke=5,6", "launcher.stroke=7,8"), "varied twice"),
@@ -74,6 +77,7 @@ def test_values_are_read(catapult: Scenario, text: str, choices: tuple[Any, ...]
         (("launcher.stroke=nan,5",), "cell 1 of 2"),
         (("plant.step_rate=0.3x,1x",), "must be one of 1000"),
         (("detector.kind=px4,nobody",), "cell 2 of 2 (detector.kind=nobody): detector.kind = 'nobody'"),
+        (("air_data.position[0]=1,far",), "cell 2 of 2 (air_data.position[0]=far): air_data.position"),
         (("environment.preset=light,storm",), "cell 2 of 2 (environment.preset=storm): environment.preset = 'storm'"),
         (("detector.kind=px4,inav", "detector.px4.time=0.1,0.2"), "cell 3 of 4"),
         (("launcher.wait_min=2,3", "launcher.wait_max=2.5,4"), "cell 3 of 4"),
@@ -108,6 +112,10 @@ def test_a_cell_is_what_set_gives(catapult: Scenario) -> None:
         ("environment.preset", "hot-high"),
     ):
         assert applied(catapult, {key: value}) == load_scenario("catapult", overrides=[f"{key}={value}"])
+
+
+def test_an_entry_of_a_list_leaves_the_others(catapult: Scenario) -> None:
+    assert applied(catapult, {"air_data.position[1]": 0.1}).air_data.position == (0.65, 0.1, 0.0)
 
 
 def test_a_weather_replaces_the_former_one() -> None:

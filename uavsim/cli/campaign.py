@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from uavsim.studies.campaign.keep import Keep
     from uavsim.studies.campaign.plan import Plan
 
+MOST_ROWS = 1000  # in a document; those of more flights are in the folder
+
 
 def campaign(
     scenario: Annotated[str, typer.Argument(help="A packaged name, a TOML file or a flight's folder.")],
@@ -107,7 +109,7 @@ def _fly(
         all_ = many_of(flights)
         view.close(record, flights, all_, plots=plots)
     if as_json:
-        document(documents.batch(all_, place.target))
+        document(documents.batch(all_, place.target, with_rows=len(all_.runs) <= MOST_ROWS))
     else:
         terminal.print_batch(all_, place.target)
         terminal.say(f"written to {place.target}")

@@ -173,7 +173,7 @@ def _fly_many(
             raise KeyboardInterrupt if not left else WrongInputError(f"no flight is finished: {left}")
         drawn = _closed(record, flights, all_, plots=plots)
     if as_json:
-        document(documents.batch(all_, held.target))
+        document(documents.batch(all_, held.target, seeds=True))
     else:
         terminal.print_batch(all_, held.target)
         terminal.say(f"written to {held.target}")

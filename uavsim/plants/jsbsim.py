@@ -99,6 +99,9 @@ class _Silence(FGLogger):
     def flush(self) -> None: ...
 
 
+SILENCE = _Silence()  # one for all: JSBSim has a logger for each thread, see `_opened`
+
+
 class JsbsimPlant:
     """An aircraft that waits on a rail, is catapulted and flies.
 
@@ -683,7 +686,10 @@ def load_airframe(airframe: Airframe) -> FGFDMExec:
 
 
 def _opened(airframe: Airframe, folder: Path) -> FGFDMExec:
-    set_logger(_Silence())
+    # A thread's end lets go of its logger without the interpreter's lock: were it the last to do so, it would end the
+    # process. This one is never let go of.
+    _leave_up(SILENCE)
+    set_logger(SILENCE)
     fdm = FGFDMExec(None)
     fdm.set_debug_level(0)
     for name in airframe.checked.early:
@@ -716,9 +722,9 @@ def _said(error: Exception, aircraft: str) -> str:
     return re.sub(where, "In file ", " ".join(str(error).split()))
 
 
-def _leave_up(fdm: FGFDMExec) -> None:
+def _leave_up(thing: FGFDMExec | FGLogger) -> None:
     """Never take this down: JSBSim works its functions out once more then, and what fails there ends the process."""
-    ctypes.pythonapi.Py_IncRef(ctypes.py_object(fdm))
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
 
 
 def _continuous(angle: Array) -> Array:

@@ -157,7 +157,7 @@ def distribution(given: Dispersion, own: object, number: type | None) -> Distrib
         mean = given.mean * scale
     elif given.distribution in NORMALS:
         mean = float(own)  # type: ignore[arg-type]  # likewise
-    numbers = number is float and all(isinstance(v, int | float) for v in given.values)
+    numbers = number is float and all(isinstance(v, int | float) and not isinstance(v, bool) for v in given.values)
     values = tuple(float(v) * scale for v in given.values) if numbers else given.values
     return Distribution(
         given.distribution,

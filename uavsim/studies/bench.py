@@ -22,6 +22,7 @@ from time import perf_counter
 
 from uavsim.beliefs import believed_air, believed_noise
 from uavsim.cosim import Cosimulation, Draws, draw, plant_settings, tare_window
+from uavsim.dispersions import resolved
 from uavsim.onboard import airspeed, launch
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.plants.plant import Commands
@@ -56,6 +57,7 @@ class OnboardCost:
 
 def measure_onboard(scenario: Scenario) -> OnboardCost:
     """Run detector and estimator of a scenario over the readings of its flight with an accelerometer at 1 kHz."""
+    scenario = resolved(scenario, scenario.index)
     accelerometer = replace(scenario.accelerometer, preset=PART, rate=RATE, range_g=None, filter=None)
     timed = Scenario.from_dict(replace(scenario, accelerometer=accelerometer).to_dict())
     simulation = Cosimulation(timed)
@@ -132,6 +134,7 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
     """
     if not scenario.plant.chosen.flies:
         raise ValueError(f"{scenario.name}: plant.kind = {scenario.plant.kind!r}: only a flight in JSBSim has it")
+    scenario = resolved(scenario, scenario.index)
     leader = _TapedPlant(scenario)
     loop = Cosimulation(scenario, plant=leader)
     reference = JsbsimPlant(plant_settings(scenario, draw(scenario)))

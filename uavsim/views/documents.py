@@ -54,13 +54,13 @@ def flight(flown: "Flight", folder: Path) -> Document:
     return plain({"folder": folder, "scenario": flown.scenario["name"], "score": flown.score})  # type: ignore[no-any-return]
 
 
-def batch(flown: "Batch | Many", folder: Path, *, with_rows: bool = True) -> Document:
+def batch(flown: "Batch | Many", folder: Path, *, seeds: bool = False, with_rows: bool = True) -> Document:
     """Of `uavsim fly --seeds` and of a campaign, whose many rows are in its folder and may be left out."""
-    from uavsim.studies.campaign.many import Many, many
+    from uavsim.studies.campaign.many import many
     from uavsim.views.campaign.summary import curves, summary
 
     flights = many(flown)
-    lost = "lost" if isinstance(flown, Many) else "lost_seeds"
+    lost = "lost_seeds" if seeds else "lost"
     found: Document = plain(
         {
             "folder": folder,

@@ -6,7 +6,7 @@ tornado.png    how far each output goes when a factor goes from its 10 % to its 
 screening.png  of Morris: spread of the elementary effects against their mean size
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,21 +18,25 @@ from uavsim.files import whole, write_json
 from uavsim.scenario import Scenario
 from uavsim.studies.campaign.sensitivity import LEAST_BASES, REST, Design, Effects, flights_for
 from uavsim.views.documents import plain, rows
-from uavsim.views.figure import BLACK, BLUE, DARK, GREY, ORANGE, RED, SMALL, label, legend, literal, sheet
+from uavsim.views.figure import BLACK, BLUE, DARK, GREY, ORANGE, RED, SMALL, label, literal, sheet
 from uavsim.views.figure import save as save_figure
 from uavsim.views.sweeping.shared import named, with_unit
 from uavsim.views.terminal import _console, _print, _table, words
-from uavsim.views.text import cut
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from rich.table import Table
 
 Array = NDArray[np.float64]
 
-MOST_LETTERS = 34  # of a factor's name
+MOST_LETTERS = 36  # of a factor's name
+MOST_BARS = 10  # factors in a panel
 COLUMNS = 2  # of panels
+NARROW = 30  # characters of a name in a table
+MOST_ROWS = 12  # factors in a table
+NOTHING = 1e-9  # of the greatest effect: rounding
 
 
 @dataclass(frozen=True)
@@ -118,92 +122,88 @@ def figures(found: Study) -> Iterator[tuple[str, Callable[[Study], "Figure"]]]:
 # -- figures ---------------------------------------------------------------------------------------------------------
 
 
-def _panels(found: Study, what: str, words_: str, *, wide: float) -> "tuple[Figure, list[tuple[Axes, Effects]]]":
-    """Make a panel for each output that has numbers."""
+def _panels(found: Study, what: str, words_: str, *, bars: int) -> "tuple[Figure, list[tuple[Axes, Effects]]]":
+    """Make a panel for each output that has numbers; `bars`: how many rows of names one has at most."""
     shown = [one for one in found.effects if not one.why]
     columns = min(COLUMNS, len(shown))
     height = -(-len(shown) // columns)
-    least = 0.9 + 0.3 * len(found.design.names) if wide else 3.6
     figure, axes = sheet(
         f"{found.scenario.name}: {what}",
         f"{remark(found.design).partition(';')[0]}, seed {found.scenario.seed}; {words_}",
         (1.0,) * height,
         (1.0,) * columns,
-        size=(12.5, 1.4 + least * height),
-        right=1.5 if not wide else 1.3,
+        size=(12.5, 1.4 + ((1.1 + 0.24 * bars) if bars else 3.6) * height),
+        right=0.4,
         share=False,
-        gap=(0.35, 0.08 if wide else 0.2),
+        gap=(0.32 + 0.9 / (bars or 10), 0.62 if bars else 0.16),
     )
     panels = [panel for row in axes for panel in row]
     for panel in panels[len(shown) :]:
         panel.set_visible(False)
-    if wide:
-        longest = max(len(_name(one)) for one in found.design.names)
-        figure.subplots_adjust(left=min(0.3, (0.35 + 0.072 * longest) / 12.5))
+    if bars:
+        figure.subplots_adjust(left=2.7 / 12.5)
     return figure, list(zip(panels, shown, strict=False))
 
 
 def _name(factor: str) -> str:
-    return literal(cut(factor, MOST_LETTERS)) if factor != REST else "rest: all else that is drawn"
+    return literal(_left(factor, MOST_LETTERS)) if factor != REST else "rest: all else that is drawn"
 
 
-def _bars(axes: "Axes", names: Sequence[str], first: bool) -> Array:
+def _left(name: str, longest: int) -> str:
+    """Return a name without its beginning if it is too long."""
+    return name if len(name) <= longest else f"…{name[1 - longest :]}"
+
+
+def _greatest(one: Effects, column: str) -> "pd.DataFrame":
+    """Rows of the factors that do most, and something, the greatest first."""
+    size = one.rows[[column, f"{column}_low", f"{column}_high"]].abs().max(axis=1)
+    moving: pd.DataFrame = one.rows[size > NOTHING * size.max()]
+    order = np.argsort(-moving[column].abs().to_numpy(), kind="stable")
+    return moving.iloc[order[:MOST_BARS]]
+
+
+def _bars(axes: "Axes", table: "pd.DataFrame", rows_: int) -> Array:
     """Set a row a factor, the first at the top; return their heights."""
-    y = -np.arange(len(names), dtype=np.float64)
-    axes.set_ylim(-len(names) + 0.4, 0.6)
-    axes.set_yticks(y, [_name(name) for name in names] if first else [""] * len(names))
+    y = -np.arange(len(table), dtype=np.float64)
+    axes.set_ylim(-rows_ + 0.4, 0.6)
+    axes.set_yticks(y, [_name(str(name)) for name in table["factor"]])
     axes.grid(visible=False, axis="y")
     return y
 
 
-def _bar(
-    axes: "Axes", y: Array, table: "pd.DataFrame", column: str, colour: str, name: str, factor: float = 1.0
-) -> None:
+def _bar(axes: "Axes", y: Array, table: "pd.DataFrame", column: str, colour: str, name: str, *, factor: float) -> None:
     value, low, high = (factor * table[f"{column}{end}"].to_numpy(float) for end in ("", "_low", "_high"))
-    axes.barh(y, value, height=0.34 if name in {"first order", "total"} else 0.6, color=colour, alpha=0.75, label=name)
+    axes.barh(y, value, height=0.34 if column != "mu_star" else 0.6, color=colour, alpha=0.75, label=name)
     axes.hlines(y, low, high, color=BLACK, linewidth=1.2)
 
 
-def _ordered(found: Study) -> list[str]:
-    """Factors by what they do to all outputs together, the greatest first."""
-    column = "total" if found.design.method == "sobol" else "mu_star"
-    score = np.zeros(len(found.design.names))
-    for one in found.effects:
-        if not one.why:
-            values = one.rows[column].to_numpy(float)
-            score += values / max(float(values.max()), 1e-300)
-    return [found.design.names[i] for i in np.argsort(-score, kind="stable")]
+def _most_bars(found: Study, column: str) -> int:
+    return max(len(_greatest(one, column)) for one in found.effects if not one.why)
 
 
 def draw_effects(found: Study) -> "Figure":
     """Draw the indices of Sobol, or the mean sizes of Morris' effects, with their intervals."""
     sobol = found.design.method == "sobol"
-    words_ = (
-        "share of the variance; lines: 95 %, bootstrap"
-        if sobol
-        else "change over a factor's range; lines: 95 %, bootstrap"
-    )
-    figure, panels = _panels(found, "what drives each output", words_, wide=True)
-    names = _ordered(found)
+    column, what = ("total", "share of the variance") if sobol else ("mu_star", "change over a factor's range")
+    count = _most_bars(found, column)
+    figure, panels = _panels(found, "what drives each output", f"{what}; lines: 95 %, bootstrap", bars=count)
     for i, (panel, one) in enumerate(panels):
-        table, y = one.rows.set_index("factor").loc[names], _bars(panel, names, i % COLUMNS == 0)
+        table = _greatest(one, column)
+        y = _bars(panel, table, count)
         name, unit, factor = named(one.output)
         if sobol:
-            _bar(panel, y + 0.18, table, "total", ORANGE, "total")
-            _bar(panel, y - 0.18, table, "first", BLUE, "first order")
+            _bar(panel, y + 0.18, table, "total", ORANGE, "total", factor=1.0)
+            _bar(panel, y - 0.18, table, "first", BLUE, "first order", factor=1.0)
             panel.axvline(0.0, color=GREY, linewidth=0.8)
-            panel.set_xlim(
-                min(-0.05, 1.1 * float(table["first_low"].min())), max(1.05, 1.05 * float(table["total_high"].max()))
-            )
+            low, high = float(table["first_low"].min()), float(table["total_high"].max())
+            panel.set_xlim(min(-0.05, 1.1 * low), max(1.05, 1.05 * high))
+            if i == 0:
+                panel.legend(loc="lower right", frameon=False, fontsize=SMALL)
         else:
-            _bar(panel, y, table, "mu_star", BLUE, "mean size", factor)
+            _bar(panel, y, table, "mu_star", BLUE, "mean size", factor=factor)
             panel.set_xlim(0.0, 1.05 * factor * float(table["mu_star_high"].max()))
         panel.set_title(f"{literal(name)}: {_spread(one)}", loc="left", fontsize=SMALL + 1.0)
-        label(
-            panel, None, "share of the variance" if sobol else f"mean size of the effect{', ' + unit if unit else ''}"
-        )
-        if i == min(COLUMNS, len(panels)) - 1:
-            legend(panel)
+        label(panel, None, what if sobol else f"mean size of the effect{', ' + unit if unit else ''}")
     return figure
 
 
@@ -217,22 +217,17 @@ def _spread(one: Effects) -> str:
 def draw_tornado(found: Study) -> "Figure":
     """Draw how far each output goes with each factor."""
     words_ = "change of the output from a factor's 10 % to its 90 % point; lines: 95 %, bootstrap"
-    figure, panels = _panels(found, "how far each output goes with a factor", words_, wide=True)
-    names = [name for name in found.design.names if name != REST]
-    mean_size = np.zeros(len(names))
-    for one in found.effects:
-        if not one.why:
-            size = one.rows.set_index("factor").loc[names, "swing"].abs().to_numpy(float)
-            mean_size += size / max(float(size.max()), 1e-300)
-    names = [names[i] for i in np.argsort(-mean_size, kind="stable")]
-    for i, (panel, one) in enumerate(panels):
-        table, y = one.rows.set_index("factor").loc[names], _bars(panel, names, i % COLUMNS == 0)
+    count = _most_bars(found, "swing")
+    figure, panels = _panels(found, "how far each output goes with a factor", words_, bars=count)
+    for panel, one in panels:
+        table = _greatest(one, "swing")
+        y = _bars(panel, table, count)
         _, unit, factor = named(one.output)
         value, low, high = (factor * table[f"swing{end}"].to_numpy(float) for end in ("", "_low", "_high"))
         panel.barh(y, value, height=0.6, color=[BLUE if v >= 0.0 else RED for v in value], alpha=0.75)
         panel.hlines(y, low, high, color=BLACK, linewidth=1.2)
         panel.axvline(0.0, color=DARK, linewidth=0.9)
-        most = 1.08 * float(np.nanmax(np.abs(np.concatenate([low, high]))))
+        most = 1.08 * float(np.max(np.abs(np.concatenate([low, high])), initial=0.0)) or 1.0
         panel.set_xlim(-most, most)
         panel.set_title(f"{literal(named(one.output)[0])}: {_spread(one)}", loc="left", fontsize=SMALL + 1.0)
         label(panel, None, f"change{', ' + unit if unit else ''}")
@@ -242,7 +237,7 @@ def draw_tornado(found: Study) -> "Figure":
 def draw_screening(found: Study) -> "Figure":
     """Draw the spread of the elementary effects against their mean size."""
     words_ = "on the right: matters; high up: interacts or bends"
-    figure, panels = _panels(found, "screening", words_, wide=False)
+    figure, panels = _panels(found, "screening", words_, bars=0)
     for panel, one in panels:
         factor = named(one.output)[2]
         x, low, high, y = (
@@ -254,7 +249,7 @@ def draw_screening(found: Study) -> "Figure":
         for factor_, at, height in zip(one.rows["factor"], x, y, strict=True):
             if at > 0.1 * float(x.max()):
                 panel.annotate(
-                    _name(str(factor_)).partition(":")[0].rpartition(".")[2] or _name(str(factor_)),
+                    literal(_left(str(factor_).rpartition(".")[2], MOST_LETTERS)),
                     (at, height),
                     xytext=(4, 4),
                     textcoords="offset points",
@@ -277,7 +272,6 @@ def print_study(found: Study) -> None:
     _print(console, words("\n", (found.scenario.name, "bold"), f", seed {found.scenario.seed}\n"))
     console.print(remark(found.design))
     console.print()
-    columns = ("first order", "total", "swing") if found.design.method == "sobol" else ("mean size", "spread", "swing")
     for one in found.effects:
         name, unit, factor = named(one.output)
         if one.why:
@@ -285,22 +279,51 @@ def print_study(found: Study) -> None:
             continue
         blocks = "base points" if found.design.method == "sobol" else "trajectories"
         left = f"; {one.missing} flights have none, {one.left_out} {blocks} are left out" if one.missing else ""
-        table = _table((f"{name}, {unit}" if unit else name, *columns))
-        keys = ("first", "total", "swing") if found.design.method == "sobol" else ("mu_star", "sigma", "swing")
-        for _, row in one.rows.sort_values(keys[1] if keys[1] == "total" else keys[0], ascending=False).iterrows():
-            scaled = [factor if key in {"swing", "mu_star", "sigma"} else 1.0 for key in keys]
-            cells = [_with_interval(row, key, by) for key, by in zip(keys, scaled, strict=True)]
-            table.add_row(cut_name(str(row["factor"])), *cells)
-        _print(console, f"{factor * one.mean:.4g} ± {factor * one.sd:.3g} {unit}".rstrip() + left, table, "")
+        console.print(f"{name}: {factor * one.mean:.4g} ± {factor * one.sd:.3g} {unit}".rstrip() + left)
+        _print(console, _effects_table(found.design, one), "")
+
+
+def _effects_table(design: Design, one: Effects) -> "Table":
+    """Return the factors that matter most; those that change nothing at all take one line."""
+    keys = ("first", "total", "swing") if design.method == "sobol" else ("mu_star", "sigma", "swing")
+    heads = ("first order", "total", "swing") if design.method == "sobol" else ("mean size", "spread", "swing")
+    _, unit, factor = named(one.output)
+    by = [1.0 if key in {"first", "total"} else factor for key in keys]
+    units = [f"{head}, {unit}" if (unit and scale != 1.0) or (unit and key == "swing") else head
+             for head, key, scale in zip(heads, keys, by, strict=True)]  # fmt: skip
+    size = "total" if design.method == "sobol" else "mu_star"
+    ordered = one.rows.sort_values(size, ascending=False)
+    moving = ordered[ordered[size].abs() > NOTHING * one.rows[size].abs().max()]
+    table = _table(("", *units))
+    digits = [_digits(scale * one.rows[key].dropna().to_numpy(float)) for key, scale in zip(keys, by, strict=True)]
+    for _, row in moving.head(MOST_ROWS).iterrows():
+        cells = [_with_interval(row, key, scale, d) for key, scale, d in zip(keys, by, digits, strict=True)]
+        table.add_row(cut_name(str(row["factor"])), *cells)
+    if len(moving) > MOST_ROWS:
+        table.add_row(f"{len(moving) - MOST_ROWS} more, smaller", "", "", "")
+    if len(moving) < len(ordered):
+        table.add_row(f"{_others(len(ordered) - len(moving))} nothing", "", "", "")
+    return table
 
 
 def cut_name(name: str) -> str:
     """Write a factor's name so that a table has room for it."""
-    return name if len(name) <= MOST_LETTERS else f"…{name[1 - MOST_LETTERS :]}"
+    return _left(name, NARROW)
 
 
-def _with_interval(row: "pd.Series[Any]", key: str, factor: float) -> Any:
+def _others(count: int) -> str:
+    return "one other changes" if count == 1 else f"{count} others change"
+
+
+def _digits(values: Array) -> int:
+    """Decimals that show the greatest of some numbers with three digits."""
+    most = float(np.max(np.abs(values), initial=0.0))
+    return max(0, min(6, 2 - int(np.floor(np.log10(most))))) if most > 0.0 else 0
+
+
+def _with_interval(row: "pd.Series[Any]", key: str, factor: float, digits: int) -> Any:
     value, low, high = (factor * row[f"{key}{end}"] for end in ("", "_low", "_high"))
     if value != value:
         return "–"
-    return words(f"{value:.3g}\n", (f"{low:.2g} … {high:.2g}", "dim"))
+    shown = [f"{round(number, digits) + 0.0:.{digits}f}" for number in (value, low, high)]  # + 0: no minus before 0
+    return words(f"{shown[0]}\n", (f"{shown[1]}…{shown[2]}", "dim"))

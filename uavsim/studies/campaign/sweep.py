@@ -34,7 +34,6 @@ from uavsim.studies.quantiles import quantile_band
 if TYPE_CHECKING:
     import pandas as pd
 
-    from uavsim.studies.engine import Client
 
 Array = NDArray[np.float64]
 
@@ -341,7 +340,7 @@ def sweep(
     wanted: float = WANTED,
     confidence: float = CONFIDENCE,
     workers: int | None = None,
-    client: "Client | None" = None,
+    client: Any = None,
     out: str | Path | None = None,
 ) -> Sweep:
     """Fly a scenario over a grid of assumptions, the same flights in every cell.

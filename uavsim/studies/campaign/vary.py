@@ -27,6 +27,7 @@ KINDS = ("detector.kind", "estimator.kind", "plant.kind")
 NEVER = ("seed", "index", "name", "description", "plugins", "requirements", "expect", "dispersions", "correlations")
 """Keys that say which flight it is, or how it is judged, and not what flies."""
 
+_ENTRY = re.compile(r"(.+)\[([0-9]{1,3})\]")
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _FACTOR = re.compile(rf"({_NUMBER})x")
 _RANGE = re.compile(rf"({_NUMBER})(x?):({_NUMBER})(x?)(?::(.*))?")
@@ -86,7 +87,7 @@ def parse(scenario: Scenario, text: str) -> Varied:
     key, equals, values = (part.strip() for part in text.partition("="))
     if not equals or not key or not values:
         raise ValueError(f"{shown(text)}: give it as KEY=VALUES, as in air_data.total.noise_scale=0.5,1,2")
-    _check_key(key)
+    _check_key(scenario, key)
     own = _own(scenario, key)
     found = _range(key, values, own) or _listed(key, values, own)
     return varied(scenario, key, found)
@@ -100,7 +101,7 @@ def varied(scenario: Scenario, key: str, values: Iterable[Any]) -> Varied:
     ValueError
         One line, as of `parse`; also for a text or a number in place of a list of values.
     """
-    _check_key(key)
+    _check_key(scenario, key)
     if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
         raise ValueError(f"{key}: give a list of values, not {shown(values)}")  # noqa: TRY004 (the user's)
     found = tuple(_whole(key, _plain(value)) for value in values)
@@ -169,56 +170,84 @@ def applied(scenario: Scenario, cell: Cell, where: str = "") -> Scenario:
         _take_weather(values["environment"], cell[WEATHER])
     for key, value in cell.items():
         if key not in KINDS:
-            _put(values, _path(key), value)
+            values = _put(values, _path(key), value)
     return Scenario.from_dict(values, where or scenario.name)
 
 
 # -- keys ------------------------------------------------------------------------------------------------------------
 
 
-def _check_key(key: str) -> None:
+def _check_key(scenario: Scenario, key: str) -> None:
     """Refuse a key that no scenario has, and one that does not say what flies."""
     if key.startswith((PROPERTIES, *OPTIONS)):  # an aircraft, or a plug-in, knows them
         return
-    if key not in keys():
-        raise ValueError(settings.unknown(Scenario, key).problem)
-    if key.partition(".")[0] in NEVER:
+    whole, entry = _entry(key)
+    if whole not in keys():
+        raise ValueError(settings.unknown(Scenario, whole).problem)
+    if whole.partition(".")[0] in NEVER:
         raise ValueError(f"{key}: says which flight it is or how it is judged; it cannot be varied")
+    if entry is not None:
+        own = _own(scenario, whole)
+        if not isinstance(own, list) or entry >= len(own):
+            has = f"has {len(own)} entries" if isinstance(own, list) else "is no list"
+            raise ValueError(f"{key}: there is no such entry; {whole} {has} in the scenario")
+
+
+def _entry(key: str) -> tuple[str, int | None]:
+    """Return a key without the number of an entry of its list, and that number."""
+    match = _ENTRY.fullmatch(key)
+    return (match[1], int(match[2])) if match and not key.startswith(PROPERTIES) else (key, None)
+
+
+def _hint(key: str) -> Any:
+    """Declared type of a key; None of what an aircraft or a plug-in knows, and of an entry of a list."""
+    if key.startswith((PROPERTIES, *OPTIONS)) or _entry(key)[1] is not None:
+        return None
+    hint = settings.hint_of(Scenario, key)
+    return getattr(hint, "__origin__", hint)
 
 
 def _check_dispersed(scenario: Scenario, key: str) -> None:
     """Refuse a key whose value a dispersion draws over; one around the key's own value goes with what is varied."""
-    for one in getattr(scenario, "dispersions", ()):
+    for one in scenario.dispersions:
         around = one.relative or ("normal" in one.distribution and one.mean is None)
-        if one.key.partition("[")[0] == key and not around:
+        apart = "[" in one.key and "[" in key and one.key != key  # another entry of the same list
+        if _entry(one.key)[0] == _entry(key)[0] and not around and not apart:
             raise ValueError(
                 f"{key}: is drawn anew for each flight by a dispersion of {scenario.name}, which would hide what is "
                 "varied; take the dispersion out, or make it relative = true"
             )
 
 
-def _path(key: str) -> list[str]:
+def _path(key: str) -> list[str | int]:
     """Return the names of a key from the outside in; a property's own name may hold dots."""
     if key.startswith(PROPERTIES):
         return [*PROPERTIES.split(".")[:2], key.removeprefix(PROPERTIES)]
-    return key.split(".")
+    whole, entry = _entry(key)
+    return [*whole.split("."), *(() if entry is None else (entry,))]
 
 
 def _own(scenario: Scenario, key: str) -> Any:
     """Return the scenario's own value of a key as a plain one; None if it has none."""
-    group: Any = scenario.to_dict()
+    group: Any = _plain(scenario.to_dict())
     for part in _path(key):
-        group = group.get(part) if isinstance(group, Mapping) else None
-    return _plain(group)
+        if isinstance(part, int):
+            group = group[part] if isinstance(group, list) and part < len(group) else None
+        else:
+            group = group.get(part) if isinstance(group, Mapping) else None
+    return group
 
 
-def _put(values: dict[str, Any], path: list[str], value: Any) -> None:
-    *groups, last = path
-    for part in groups:
-        inner = values.get(part)
-        values[part] = dict(inner) if isinstance(inner, Mapping) else {}
-        values = values[part]
-    values[last] = value
+def _put(values: Any, path: list[str | int], value: Any) -> Any:
+    """Return plain values with another one at a path; groups on the way that are not there are made."""
+    if not path:
+        return value
+    name, *rest = path
+    if isinstance(name, int):
+        return [_put(item, rest, value) if i == name else item for i, item in enumerate(values)]
+    group = dict(values) if isinstance(values, Mapping) else {}
+    group[name] = _put(group.get(name), rest, value)
+    return group
 
 
 def _take_weather(air: dict[str, Any], name: Any) -> None:
@@ -264,7 +293,7 @@ def _listed(key: str, text: str, own: Any) -> list[Any]:
         if not all(factors):
             raise ValueError(f"{key}={text}: all values are factors, such as 0.5x, or none is")
         return [_multiplied(key, own, float(factor[1])) for factor in factors if factor]
-    is_text = not key.startswith((PROPERTIES, *OPTIONS)) and settings.hint_of(Scenario, key) is str
+    is_text = _hint(key) is str
     found = [value_of_text(part) for part in parts]
     return [part if is_text and not isinstance(value, str) else value for part, value in zip(parts, found, strict=True)]
 
@@ -317,11 +346,7 @@ def _multiplied_inside(value: Any, factor: float) -> Any:
 
 def _whole(key: str, value: Any) -> Any:
     """Return a whole number for a key that takes no other, where the value is one."""
-    if not isinstance(value, float) or not value.is_integer() or key.startswith((PROPERTIES, *OPTIONS)):
-        return value
-    hint = settings.hint_of(Scenario, key)
-    base = getattr(hint, "__origin__", hint)
-    return int(value) if base is int else value
+    return int(value) if isinstance(value, float) and value.is_integer() and _hint(key) is int else value
 
 
 def _plain(value: Any) -> Any:

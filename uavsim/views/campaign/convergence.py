@@ -58,8 +58,8 @@ def draw(flown: Many) -> "Figure | None":
         _panel(one, found[name], quantity, within)
         beyond = np.flatnonzero(within.beyond).tolist() if quantity is not SHARE else []
         if beyond:
-            named = not_to_scale(flown, beyond, values, quantity.unit, quantity.digits)
-            remarks.append(f"{quantity.name} beyond the scale: {named}")
+            told = not_to_scale(flown, beyond, values, quantity.unit, quantity.digits)
+            remarks.append(f"{quantity.name} beyond the scale: {told}")
         limit_lines(one, flown, quantity.key, quantity.factor)
         if quantity is SHARE:
             one.set_ylim(one.get_ylim()[0], min(one.get_ylim()[1], 101.0))

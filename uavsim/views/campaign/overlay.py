@@ -51,7 +51,7 @@ def draw(flown: Many) -> "Figure | None":
         panels.insert(0, ("altitude, m\n(kept flights)", heights))
     if speeds:
         panels.insert(0, ("true airspeed, m/s", speeds))
-    words = f"{len(shown)} of {flights(len(flown))}"
+    words = flights(len(flown)) if len(flown) <= THIN else f"grey: {THIN} of {flights(len(flown))}"
     words += "; coloured: the greatest airspeed RMSE over the whole flight" if worst else ""
     end = float(time[np.isfinite(errors).any(axis=0)][-1])
     columns = (1.5, 1.0) if end > 2.0 * ENLARGED else (1.0,)

@@ -394,10 +394,10 @@ class Splitter:
     def _measure(self, rng: np.random.Generator) -> tuple[int, int, Wholes, float]:
         """Measure how far sequences are from an alarm; return m₀, the farthest m, the table, and the work."""
         watch, (mean, *others) = self.watch, self._signal
-        found = np.zeros((FARTHEST + 2, FARTHEST + 2, 2), np.int64)
         tried = np.zeros(2, np.int64)
         fresh = self._loops.attempt(*self._detector, 0, self._signal, 0, FARTHEST, tried)
         farthest = min(FARTHEST, fresh + fresh // 4 + 2)
+        found = np.zeros((farthest + 2, farthest + 2, 2), np.int64)
         work = self._loops.visit(*self._detector, (mean[:VISITED], *others), farthest, 1, rng, found) + tried[0]
         near = found[: farthest + 1, :, 0]
         if not near.any() and found.any():
@@ -408,7 +408,7 @@ class Splitter:
         by = found.sum(axis=0)[1:]
         often = (by[:, 0] >= 50) & (by[:, 1] < 0.9 * by[:, 0])  # where all samples bring nearer, it is time that does
         like_push = float(np.max(by[often, 1] / by[often, 0], initial=0.0))
-        table = _table(min(max(like_push, 0.02), 0.5))
+        table = _table(round(min(max(like_push, 0.02), 0.5), 2), farthest)
         known = table[: farthest + 1]
         at = np.bincount(known[near > 0], weights=near[near > 0], minlength=2)
         share = np.cumsum(at) / max(1, found[:, :, 0].sum())
@@ -449,11 +449,11 @@ class Splitter:
 
 
 @lru_cache(maxsize=32)
-def _table(like_push: float) -> Wholes:
+def _table(like_push: float, farthest: int) -> Wholes:
     """Distance by m and d: -ln P(at least d of m samples act like a push) over `STEP`, rounded up; last row: far."""
     from scipy.special import bdtrc
 
-    m = np.arange(FARTHEST + 2, dtype=np.float64)
+    m = np.arange(farthest + 2, dtype=np.float64)
     chance = bdtrc(m[np.newaxis, :] - 1.0, np.maximum(m[:, np.newaxis], 1.0), like_push)
     chance = np.where(m[np.newaxis, :] <= 0.0, 1.0, chance)
     with np.errstate(divide="ignore"):
