@@ -85,7 +85,13 @@ def print_verified(found: Verified) -> None:
         table.add_row(name, _figure(one.estimate), _bounds(one), verdict)
     title = words("\n", (found.scenario.name, "bold"), f", {_flights(seen.runs)}, {100.0 * seen.confidence:g} %: ")
     head = words(title.plain, (_summary(seen), f"bold {STYLES[seen.verdict]}"), "\n")
-    _print(console, head, table, "", *(_plan(one) for one in seen.judgements if one.verdict == "undecided"))
+    _print(
+        console,
+        head,
+        table,
+        "",
+        *(_plan(one, seen.confidence) for one in seen.judgements if one.verdict == "undecided"),
+    )
 
 
 def _summary(seen: Verification) -> str:
@@ -111,8 +117,11 @@ def _bounds(one: Judgement) -> str:
     return f"≥ {_figure(one.low)}" if one.high is None else f"{_figure(one.low)} … {_figure(one.high)}"
 
 
-def _plan(one: Judgement) -> str:
+def _plan(one: Judgement, confidence: float) -> str:
     """Say what number of flights would decide an open requirement."""
+    if min(one.p_met, one.p_not_met) <= 1.0 - confidence:
+        word = "met" if one.p_met <= one.p_not_met else "not met"
+        return f"{one.requirement}: {word} by itself; said once all are met, or at Holm's level for single ones"
     as_now = NEVER if one.decided_by is None else f"{one.decided_by} flights"
     clean = "" if one.met_by is None else f", met by {one.met_by} if nothing speaks against it from now on"
     return f"{one.requirement}: as things are, decided by {as_now}{clean}"
@@ -187,7 +196,7 @@ def junit(seen: Verification, scenario: "Scenario", seconds: float = 0.0) -> byt
         if one.verdict == "not met":
             SubElement(case, "failure", type="not met", message=said).text = said
         elif one.verdict == "undecided":
-            said = f"undecided: {said}; {visible(_plan(one))}"
+            said = f"undecided: {said}; {visible(_plan(one, seen.confidence))}"
             SubElement(case, "error", type="undecided", message=said).text = said
     indent(root)
     content: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
@@ -227,12 +236,11 @@ def _panel(axes: "Axes", one: Judgement, seen: Course) -> None:
     low, high = _limits(one, seen)
     bottom = np.where(np.isnan(seen.low), low, np.clip(seen.low, low, high))
     top = np.where(np.isnan(seen.high), high, np.clip(seen.high, low, high))
-    axes.fill_between(seen.flights, bottom, top, color=BLUE, alpha=0.18, linewidth=0.0)
+    axes.fill_between(seen.flights, bottom, top, color=BLUE, alpha=0.18, linewidth=0.0, step="post")
     axes.plot(seen.flights, seen.estimate, color=BLUE, linewidth=1.2)
     axes.axhline(one.bound, color=DARK, linewidth=1.0, linestyle="--")
     if seen.flights.size and seen.flights[-1] > seen.flights[0]:
-        axes.set_xscale("log")
-        axes.set_xlim(seen.flights[0], seen.flights[-1])
+        axes.set_xlim(0, seen.flights[-1])
     axes.set_ylim(low, high)
     axes.set_title(literal(str(one.requirement)), fontsize=SMALL, loc="left", color=DARK)
     axes.text(

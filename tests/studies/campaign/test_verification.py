@@ -144,6 +144,7 @@ def test_all_met_needs_no_correction_but_single_ones_do() -> None:
     frame["launch.false_detections"] = 1.0
     found = judge([CRUISE, EVERY], frame)
     assert [one.verdict for one in found.judgements] == ["undecided", "not met"]
+    assert (found.judgements[0].p_met, found.judgements[0].decided_by) == (pytest.approx(0.05), None)
     more = int(sequential.few_times(sequential.Flights(0.005), 0.025, 1024.0)[0])
     longer = flights(more).assign(**{"launch.false_detections": 1.0})
     assert [one.verdict for one in judge([CRUISE, EVERY], longer).judgements] == ["met", "not met"]

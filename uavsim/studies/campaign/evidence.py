@@ -59,9 +59,9 @@ class Seen:
             self.method,
         )
 
-    def plan(self, word: str) -> tuple[int | None, int | None]:
+    def plan(self, word: str, error: float) -> tuple[int | None, int | None]:
         """Flights that would decide it, and that would if nothing spoke against it any more."""
-        if word != "undecided":
+        if word != "undecided" or min(self.p_met, self.p_not_met) <= error:  # the latter waits for the others
             return None, None
         found = [n for n in (self.met_flights, self.not_met_flights) if n is not None]
         return min(found, default=None), self.met_by

@@ -46,7 +46,7 @@ every bound.
 use the levels at which a Brownian motion would have spent 1 - 1/(i + 2) of the error by look i (Armitage, McPherson &
 Rowe's recursion), and those levels are asked of Student's or the studentised bootstrap's bound at that look
 (`estimates.mean_bound`; Jennison & Turnbull's "significance level approach", ch. 3.8). This holds as well as that
-bound does; it is measured in `tests/validation/test_verification.py`.
+bound does; it is measured in `tests/validation/test_verdicts.py`.
 """
 
 from dataclasses import dataclass

@@ -71,7 +71,8 @@ class Judgement:
     method
         How the bounds were found.
     decided_by
-        Number of flights that would decide it if the rest were as those so far; None if none would, or too many.
+        Number of flights that would decide it if the rest were as those so far; None if none would, or too many, or if
+        its own test has decided and only the others are waited for.
     met_by
         The same if nothing speaks against it from now on; None of means.
     """
@@ -151,7 +152,7 @@ def judge(requirements: Sequence[Requirement], flights: "pd.DataFrame", confiden
     error = 1.0 - confidence
     found = [seen(one, flights, error, len(requirements)) for one in requirements]
     judgements = tuple(
-        Judgement(requirement, word, *one.figures, *one.plan(word))
+        Judgement(requirement, word, *one.figures, *one.plan(word, error))
         for requirement, word, one in zip(requirements, words, found, strict=True)
     )
     return Verification(judgements, len(flights), confidence)
