@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 MOST_ROWS = 20  # cells that a table shows
 MOST_LETTERS = 18  # of a value in a table
 QUANTITY_WORDS = {"p05": "5 %", "median": "median", "p95": "95 %"}
-STATES = {"holds": "not reached", "broken": "nowhere met"}
+STATES = {"holds": "beyond", "broken": "nowhere"}
 
 
 def print_sweep(found: Sweep) -> None:
@@ -106,7 +106,7 @@ def _print_limits(console: Any, found: Sweep) -> None:
     limits = found.limits
     if limits.empty:
         return
-    table = _table(("met by", "wanted, %", "estimate", "band", "quantile"))
+    table = _table(("met by", "%", "estimate", "band", "quantile"))
     for name, rows in limits.groupby("requirement", sort=False):
         states = set(rows["state"])
         shown, wanted = short(str(name), 34), f"{100.0 * rows['wanted'].iloc[0]:.6g}"
