@@ -77,7 +77,7 @@ def test_values_are_read(catapult: Scenario, text: str, choices: tuple[Any, ...]
         (("launcher.stroke=nan,5",), "cell 1 of 2"),
         (("plant.step_rate=0.3x,1x",), "must be one of 1000"),
         (("detector.kind=px4,nobody",), "cell 2 of 2 (detector.kind=nobody): detector.kind = 'nobody'"),
-        (("air_data.position[0]=1,far",), "cell 2 of 2 (air_data.position[0]=far): air_data.position = ['far', 0.0, 0.0]"),
+        (("air_data.position[0]=1,far",), "position[0]=far): air_data.position = ['far', 0.0, 0.0]"),
         (("environment.preset=light,storm",), "cell 2 of 2 (environment.preset=storm): environment.preset = 'storm'"),
         (("detector.kind=px4,inav", "detector.px4.time=0.1,0.2"), "cell 3 of 4"),
         (("launcher.wait_min=2,3", "launcher.wait_max=2.5,4"), "cell 3 of 4"),
