@@ -31,6 +31,7 @@ TYPER = "The command line is parsed in cli"
 MATPLOTLIB = "Figures are drawn in views"
 RICH = "Terminals are written to by views and cli"
 PYDANTIC = "Settings are validated in one place"
+DASK = "Work is spread over processes in one place"
 XML = "XML of a stranger's aircraft is read in one place"
 
 BREAKS = [
@@ -55,6 +56,8 @@ BREAKS = [
     ("uavsim/studies/newcomer.py", "import filterpy.kalman", {FILTERPY}),
     ("uavsim/onboard/launch/newcomer.py", "from numba import njit", {NUMBA}),
     ("uavsim/studies/newcomer.py", "def late():\n    import numba", {NUMBA}),
+    ("uavsim/studies/campaign/newcomer.py", "def late():\n    import distributed", {DASK}),
+    ("uavsim/cli/newcomer.py", "from dask import config", {DASK}),
     ("uavsim/views/newcomer.py", "import typer", {TYPER}),
     ("uavsim/studies/newcomer.py", "def late():\n    import matplotlib.figure", {MATPLOTLIB}),
     ("uavsim/studies/newcomer.py", "import rich.table", {RICH}),

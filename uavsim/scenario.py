@@ -555,25 +555,6 @@ def with_kinds(s: Scenario, **chosen: Any) -> Scenario:
     return Scenario.from_dict(values, s.name) if values != s.to_dict() else s
 
 
-def changed(s: Scenario, keys: Mapping[str, Any]) -> Scenario:
-    """The same scenario with other values under keys joined by dots.
-
-    Raises
-    ------
-    ValueError
-        One line: an unknown key, or a value that cannot be.
-    """
-    values = s.to_dict()
-    try:
-        for key, value in keys.items():
-            if not key.startswith((PROPERTIES, *OPTIONS)) and key not in settings.keys(Scenario):
-                raise settings.unknown(Scenario, key)
-            _set(values, key, value)
-    except SettingError as error:
-        raise ValueError(f"{s.name}: {error.problem}") from None
-    return Scenario.from_dict(values, s.name)
-
-
 def _airframe(model: str) -> str:
     """An aircraft of one's own with its files, checked; the name of a packaged one."""
     if isinstance(model, Airframe):

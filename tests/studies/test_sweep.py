@@ -130,6 +130,31 @@ def test_limits_over_two_keys_are_line_by_line() -> None:
     assert set(limits["key"]) == {"air_data.total.noise_scale", "air_data.static.noise_scale"}
 
 
+PACK = """requirements=[
+    {key='outcome',statistic='probability',equals='cruise',at_least=0.9},
+    {key='outcome',statistic='probability',equals='crashed',at_most=0.02},
+    {key='airspeed.rmse',statistic='p95',maximum=0.5},
+    {key='airspeed.rmse',statistic='p05',minimum=0.05},
+    {key='airspeed.rmse',statistic='mean',maximum=0.5},
+    {key='launch.false_detections',statistic='rate_per_hour',maximum=0.1,exposure='armed'}]""".replace("\n", "")
+
+
+def test_requirements_of_many_flights_have_their_own_probability() -> None:
+    """The p95 is at most 0.5 where 95 of 100 flights are; a crash with 0.02 is none with 0.98. A mean has no limit."""
+    found = made_up("air_data.total.noise_scale=1,2,4,6", overrides=(PACK,))
+    wanted = {one.name: one.wanted for one in found.judged()}
+    assert list(wanted.values()) == pytest.approx([0.95, 0.9, 0.98, 0.95, 0.95])
+    limits = found.limits.set_index("requirement")
+    upper = limits.loc[next(name for name in wanted if name.startswith("p95"))]
+    every = made_up("air_data.total.noise_scale=1,2,4,6").limits.set_index("requirement").loc["airspeed.rmse ≤ 0.5"]
+    names = ["low", "high", "estimate", "quantile"]
+    assert upper[names].tolist() == every[names].tolist()
+    crashes = next(one for one in found.judged() if "crashed" in one.name)
+    assert np.all(crashes.met == 1.0)
+    cruise = next(one for one in found.judged() if "= cruise" in one.name)
+    assert np.nansum(cruise.met) == 4 * 99
+
+
 def test_names_have_no_limit() -> None:
     assert made_up("detector.kind=px4,inav").limits.empty
 

@@ -77,7 +77,7 @@ def test_values_are_read(catapult: Scenario, text: str, choices: tuple[Any, ...]
         (("launcher.stroke=nan,5",), "cell 1 of 2"),
         (("plant.step_rate=0.3x,1x",), "must be one of 1000"),
         (("detector.kind=px4,nobody",), "cell 2 of 2 (detector.kind=nobody): detector.kind = 'nobody'"),
-        (("air_data.position[0]=1,far",), "cell 2 of 2 (air_data.position[0]=far): air_data.position"),
+        (("air_data.position[0]=1,far",), "position[0]=far): air_data.position = ['far', 0.0, 0.0]"),
         (("environment.preset=light,storm",), "cell 2 of 2 (environment.preset=storm): environment.preset = 'storm'"),
         (("detector.kind=px4,inav", "detector.px4.time=0.1,0.2"), "cell 3 of 4"),
         (("launcher.wait_min=2,3", "launcher.wait_max=2.5,4"), "cell 3 of 4"),
@@ -148,3 +148,17 @@ def test_columns_have_one_type() -> None:
     assert labels((True, False)) == (True, False)
     assert labels((1, "two")) == ("1", "two")
     assert labels(("a", [1, 2])) == ("a", "[1, 2]")
+
+
+def test_dispersions_are_the_same_draws_in_all_cells() -> None:
+    """One around the key's own value goes with what is varied, by the same distance; one of its own is refused."""
+    scenario = load_scenario("dispersed-sensors")
+    grid = cells(scenario, [parse(scenario, "accelerometer.bias=0,0.5")])
+    plan = Cells(scenario, grid, 2)
+    one, other = plan.columns(1), plan.columns(3)
+    drawn = [name for name in one if name.startswith("draw.")]
+    assert len(drawn) > 10
+    assert [name for name in drawn if one[name] != other[name]] == ["draw.accelerometer.bias"]
+    assert other["draw.accelerometer.bias"] - one["draw.accelerometer.bias"] == pytest.approx(0.5, abs=1e-12)
+    with pytest.raises(ValueError, match="is drawn anew for each flight"):
+        parse(scenario, "air_data.total.noise_scale=1,2")

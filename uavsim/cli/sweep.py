@@ -106,7 +106,7 @@ def _fly(
     name = f"{plan.scenario.name}-{plan.scenario.seed}-sweep"
     with campaign_folder(out, name, overwrite=overwrite, resume=resume) as place:
         before = before_of(place, plan, resume=resume)
-        remark([f"{len(plan.cells)} cells of {plan.runs} flights: {plan.size} flights", *_remarks(plan)])
+        remark([f"{len(plan.cells)} cells, {plan.runs} flights in each: {plan.size} in all", *_remarks(plan)])
         flights = flown(Record(place.folder, plan, keep=str(rule), before=before), means, rule)
         grid = tuple(dict(cell) for cell in plan.cells)
         found = of(plan.scenario, varies, grid, plan.runs, flights.runs, wanted=wanted)

@@ -278,13 +278,22 @@ def _plan_differences(there: Plan, here: Plan) -> list[str]:
         a, b = first.get(key), second.get(key)
         longer = key == "runs" and first["kind"] == "random" and isinstance(b, int) and isinstance(a, int) and b >= a
         if a != b and not longer:
-            found.append(f"{key} was {_brief(a)} and is {_brief(b)}")
+            found.append(_difference(key, a, b))
     return found
+
+
+def _difference(key: str, was: Any, now: Any) -> str:
+    """Of two lists the first entry that they do not share."""
+    if isinstance(was, list) and isinstance(now, list):
+        i = next((i for i, (a, b) in enumerate(zip(was, now, strict=False)) if a != b), min(len(was), len(now)))
+        ends = [value[i] if i < len(value) else "none" for value in (was, now)]
+        return f"{key}[{i}] was {_brief(ends[0])} and is {_brief(ends[1])}"
+    return f"{key} was {_brief(was)} and is {_brief(now)}"
 
 
 def _brief(value: Any) -> str:
     text = repr(value)
-    return text if len(text) <= 40 else f"{text[:37]}…"
+    return text if len(text) <= 80 else f"{text[:77]}…"
 
 
 def _identity_differences(told: object) -> list[str]:

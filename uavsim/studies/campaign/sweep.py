@@ -61,7 +61,7 @@ class Sweep:
     runs
         A row a flight: `index` = cell · flights + `run`, `vary.KEY`, and the score.
     wanted
-        Probability with which a requirement shall be met.
+        Probability with which the outcome, and a requirement of every flight, shall be met.
     confidence
         Of all intervals.
     """
@@ -77,7 +77,7 @@ class Sweep:
     @property
     def quantities(self) -> tuple[str, ...]:
         """Numbers of the score that are looked at: latency, error, exit speed, and what a requirement bounds."""
-        asked = (*QUANTITIES, *(r.key for r in self.scenario.requirements if r.of_each_flight))
+        asked = (*QUANTITIES, *(r.key for r in self.scenario.requirements if r.equals is None and r.key != OUTCOME))
         return tuple(key for key in dict.fromkeys(asked) if key in self.runs and self.runs[key].notna().any())
 
     @property
@@ -193,13 +193,35 @@ class Sweep:
         ]
 
     def judged(self) -> "list[Judged]":
-        """What shall be met: the outcome, and each requirement that bounds a number of a flight."""
-        found = [Judged(f"outcome {self.scenario.expect}", self.expected())]
-        for one in (r for r in self.scenario.requirements if r.of_each_flight):
-            if one.key not in self.runs or (one.minimum is None and one.maximum is None):
-                continue
-            found.append(_judged(one, self.values(one.key), self.expected()))
-        return found
+        """What shall be met, with which probability: the outcome, and each requirement that a flight decides.
+
+        `every` with the probability that is wanted; `probability` with its own, that an event does not come with what
+        is left of it; a quantile with its own: at most a bound at p95 is met by 95 of 100 flights. A mean and a rate
+        are decided by no single flight and have no limit here.
+        """
+        found = [Judged(f"outcome {self.scenario.expect}", self.expected(), self.wanted)]
+        return found + [one for r in self.scenario.requirements if (one := self._judged(r)) is not None]
+
+    def _judged(self, one: Requirement) -> "Judged | None":
+        if one.key not in self.runs or one.kind not in {"every", "probability", "quantile"}:
+            return None
+        bounds: tuple[float | None, float | None] = (None, None)
+        values = None
+        if one.equals is not None:
+            good = self._spread((self.runs[one.key] == one.equals).to_numpy().astype(np.float64))
+        else:
+            bounds, values = (one.minimum, one.maximum), self.values(one.key)
+            good = np.where(np.isfinite(self.expected()), _within(values, *bounds), np.nan)
+        if one.kind == "every":
+            return Judged(_written(one), good, self.wanted, values, *bounds)
+        if one.quantile is not None:
+            share = one.quantile if one.is_upper else 1.0 - one.quantile
+            return Judged(str(one), good, share, values, *bounds) if 0.0 < share < 1.0 else None
+        share = one.at_least if one.at_least is not None else 1.0 - (one.at_most or 0.0)
+        if not 0.0 < share < 1.0:
+            return None
+        rare = one.at_least is None  # an event that shall not come: its number has no bound to pass
+        return Judged(str(one), 1.0 - good, share) if rare else Judged(str(one), good, share, values, *bounds)
 
     def _limits(self, judged: "Judged") -> Iterator[dict[str, Any]]:
         for axis, one in enumerate(self.varies):
@@ -213,7 +235,7 @@ class Sweep:
                         "key": one.key,
                         **others,
                         **_plain(found),
-                        "wanted": self.wanted,
+                        "wanted": judged.wanted,
                     }
 
     def lines(self, axis: int) -> Iterator[NDArray[np.int_]]:
@@ -233,7 +255,7 @@ class Sweep:
         return crossings(
             numbers,
             met,
-            self.wanted,
+            judged.wanted,
             own=float(own) if isinstance(own, int | float) else None,
             confidence=self.confidence,
             values=None if judged.numbers is None else judged.numbers[line].T,
@@ -244,25 +266,39 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Judged:
-    """Something that a flight meets or not: 1, 0, or NaN where it was not flown; shape (cells, flights)."""
+    """Something that a flight meets or not.
+
+    Attributes
+    ----------
+    name
+        As people write it.
+    met
+        1, 0, or NaN where it was not flown; shape (cells, flights).
+    wanted
+        Probability with which it shall be met.
+    numbers, minimum, maximum
+        What is bounded, in the same shape, and its bounds; None if it is no number.
+    """
 
     name: str
     met: Array
+    wanted: float
     numbers: Array | None = None
     minimum: float | None = None
     maximum: float | None = None
 
 
-def _judged(one: Requirement, values: Array, flown: Array) -> Judged:
-    """Judge each flight by a requirement; a number that does not exist meets no bound."""
-    low, high = one.minimum, one.maximum
+def _within(values: Array, low: float | None, high: float | None) -> Array:
+    """Return 1 where a number meets its bounds; one that does not exist meets none."""
     good = (values >= (-np.inf if low is None else low)) & (values <= (np.inf if high is None else high))
-    met = np.where(np.isfinite(flown), good.astype(np.float64), np.nan)
+    return good.astype(np.float64)
+
+
+def _written(one: Requirement) -> str:
+    low, high = one.minimum, one.maximum
     if low is not None and high is not None:
-        name = f"{low:g} ≤ {one.key} ≤ {high:g}"
-    else:
-        name = f"{one.key} ≥ {low:g}" if low is not None else f"{one.key} ≤ {high:g}"
-    return Judged(name, met, values, low, high)
+        return f"{low:g} ≤ {one.key} ≤ {high:g}"
+    return f"{one.key} ≥ {low:g}" if low is not None else f"{one.key} ≤ {high:g}" if high is not None else one.key
 
 
 def _plain(found: Crossing) -> dict[str, Any]:

@@ -24,7 +24,7 @@ def draw_limit_map(found: Sweep, across: int, up: int) -> "Figure":
     judged = judged_over(found, across, up)
     columns = 2 if len(judged) > 1 else 1
     height = -(-len(judged) // columns)
-    line = f"red: where it crosses {100.0 * found.wanted:g} %, with its 95 % band, line by line"
+    line = "red: where it crosses the wanted one, with its 95 % band, line by line"
     words = f"share of flights that meet it, %; {line}"
     figure, axes = sheet(
         title(found, "how much can be afforded of two things at once"),
@@ -42,9 +42,11 @@ def draw_limit_map(found: Sweep, across: int, up: int) -> "Figure":
         met = one.met[plane]
         with np.errstate(invalid="ignore"):
             draw_tiles(panel, 100.0 * np.nanmean(met, axis=2), found, across, up, "cividis", (0.0, 100.0), lift=0.3)
-        _hatch(panel, met, found)
+        _hatch(panel, met, found, one.wanted)
         remark = _draw_contour(panel, found, across, up, plane, one)
-        panel.set_title(literal(one.name) + remark, loc="left", fontsize=SMALL + 1.0)
+        panel.set_title(
+            f"{literal(one.name)}, wanted {100.0 * one.wanted:.6g} %{remark}", loc="left", fontsize=SMALL + 1.0
+        )
         label(panel, literal(found.varies[up].key), literal(found.varies[across].key))
     for panel in panels[len(judged) :]:
         panel.set_visible(False)
@@ -58,14 +60,14 @@ def judged_over(found: Sweep, across: int, up: int) -> list[Judged]:
     return [one for one, share in shares if np.ptp(share) > 0.0]
 
 
-def _hatch(axes: "Axes", met: Array, found: Sweep) -> None:
+def _hatch(axes: "Axes", met: Array, found: Sweep, wanted: float) -> None:
     """Mark cells whose probability may lie on either side of the wanted one."""
     from matplotlib.patches import Rectangle
 
     for row, column in np.ndindex(met.shape[:2]):
         flights = met[row, column][np.isfinite(met[row, column])]
         low, high = share_interval(int(flights.sum()), flights.size, found.confidence)
-        if low < found.wanted <= high:
+        if low < wanted <= high:
             tile = Rectangle(
                 (column - 0.5, row - 0.5), 1.0, 1.0, fill=False, hatch="///", edgecolor="#ffffff88", linewidth=0.0
             )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.studies.campaign.crossing import Crossing, fewest
-from uavsim.studies.campaign.sweep import Sweep
+from uavsim.studies.campaign.sweep import Judged, Sweep
 from uavsim.studies.intervals import share_interval
 from uavsim.views.figure import BLACK, BLUE, GREY, PURPLE, RED, SMALL, label, legend, literal, sheet
 from uavsim.views.sweeping.shared import Scale, beside, flights, line_of, scale_of, title
@@ -31,11 +31,11 @@ def draw_limits(found: Sweep, axis: int) -> "Figure":
         gap=(0.3, 0.0),
     )
     for (panel,), one in zip(axes, judged, strict=True):
-        _draw_shares(panel, found, scale, one.met[line])
+        _draw_shares(panel, found, scale, one, one.met[line])
         scale.dress(panel)
         low, high = panel.get_xlim()
         for limit in found.limits_along(axis, line, one):
-            _draw_limit(panel, limit, found, low, high)
+            _draw_limit(panel, limit, _few(found, one), low, high)
         panel.set_title(literal(one.name), loc="left", fontsize=SMALL + 1.0)
         panel.set_ylim(-3.0, 104.0)
         label(panel, "flights that meet it, %")
@@ -44,13 +44,13 @@ def draw_limits(found: Sweep, axis: int) -> "Figure":
     return figure
 
 
-def _draw_shares(axes: "Axes", found: Sweep, scale: Scale, met: Array) -> None:
+def _draw_shares(axes: "Axes", found: Sweep, scale: Scale, one: Judged, met: Array) -> None:
     flown, good = np.isfinite(met).sum(axis=1), np.nansum(met, axis=1)
     bounds = 100.0 * np.array(
         [share_interval(int(k), int(n), found.confidence) for k, n in zip(good, flown, strict=True)]
     )
     axes.axhline(
-        100.0 * found.wanted, color=GREY, linewidth=1.0, linestyle="--", label=f"wanted: {100.0 * found.wanted:g} %"
+        100.0 * one.wanted, color=GREY, linewidth=1.0, linestyle="--", label=f"wanted: {100.0 * one.wanted:.6g} %"
     )
     axes.vlines(scale.places, bounds[:, 0], bounds[:, 1], color=BLACK, linewidth=1.2)
     share = 100.0 * good / flown
@@ -58,7 +58,7 @@ def _draw_shares(axes: "Axes", found: Sweep, scale: Scale, met: Array) -> None:
     axes.plot(scale.places, share, "o", color=BLACK, markersize=4.5, label="share of the flights")
 
 
-def _draw_limit(axes: "Axes", limit: Crossing, found: Sweep, low: float, high: float) -> None:
+def _draw_limit(axes: "Axes", limit: Crossing, few: str, low: float, high: float) -> None:
     """Shade the band of a limit, mark its estimate, and say both."""
     way = "up to" if limit.rising else "down to"
     if limit.state == "holds":
@@ -68,7 +68,7 @@ def _draw_limit(axes: "Axes", limit: Crossing, found: Sweep, low: float, high: f
         axes.plot([], [], " ", label=f"{way}: nothing, broken everywhere")
         return
     ends = (low if limit.low is None else limit.low, high if limit.high is None else limit.high)
-    axes.axvspan(*ends, color=RED, alpha=0.13, linewidth=0.0, label=f"95 % band: {_range(limit, found)}")
+    axes.axvspan(*ends, color=RED, alpha=0.13, linewidth=0.0, label=f"95 % band: {_range(limit, few)}")
     axes.axvline(limit.estimate, color=RED, linewidth=1.4, label=f"{way} {limit.estimate:.3g}, estimate")
     if limit.quantile is not None:
         axes.axvline(
@@ -88,12 +88,13 @@ def _shown_to(limit: Crossing) -> str:
     return "" if limit.held is None else f";\n  shown to hold to {limit.held:.3g}"
 
 
-def _range(limit: Crossing, found: Sweep) -> str:
+def _range(limit: Crossing, few: str) -> str:
     """Write the band; an open end says why."""
     if limit.held is None and limit.lost is None:
-        return f"open;\n  a cell is shown good by {fewest(found.wanted, found.confidence)} flights"
+        return f"open;{few}"
     low, high = ("open" if end is None else f"{end:.3g}" for end in (limit.low, limit.high))
-    remark = ""
-    if limit.held is None:
-        remark = f";\n  a cell is shown good by {fewest(found.wanted, found.confidence)} flights"
-    return f"{low} … {high}{remark}"
+    return f"{low} … {high}" + (f";{few}" if limit.held is None else "")
+
+
+def _few(found: Sweep, one: Judged) -> str:
+    return f"\n  {fewest(one.wanted, found.confidence)} flights show a cell to be good"

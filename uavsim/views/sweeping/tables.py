@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 MOST_ROWS = 20  # cells that a table shows
 MOST_LETTERS = 18  # of a value in a table
 QUANTITY_WORDS = {"p05": "5 %", "median": "median", "p95": "95 %"}
-STATES = {"holds": "not reached", "broken": "broken everywhere"}
+STATES = {"holds": "beyond", "broken": "nowhere"}
 
 
 def print_sweep(found: Sweep) -> None:
@@ -106,25 +106,29 @@ def _print_limits(console: Any, found: Sweep) -> None:
     limits = found.limits
     if limits.empty:
         return
-    table = _table((f"met by {100 * found.wanted:g} %", "estimate", "band", "quantile"))
+    table = _table(("met by", "%", "estimate", "band", "quantile"))
     for name, rows in limits.groupby("requirement", sort=False):
         states = set(rows["state"])
-        shown = short(str(name), 40)
+        shown, wanted = short(str(name), 34), f"{100.0 * rows['wanted'].iloc[0]:.6g}"
         if len(states) == 1 and "breaks" not in states:
             row = rows.iloc[0]
             held = _band(row) if len(rows) == 1 else ""
-            table.add_row(shown, STATES[row["state"]], held, "")
+            table.add_row(shown, wanted, STATES[row["state"]], held, "")
             continue
-        table.add_row(shown, "", "", "")
+        table.add_row(shown, wanted, "", "", "")
         for row in _rows(rows):
             estimate = _number(row["estimate"]) if row["state"] == "breaks" else STATES[row["state"]]
-            table.add_row(f"  {_where(found, row)}", estimate, _band(row), _number(row["quantile"]))
+            table.add_row(f"  {_where(found, row)}", "", estimate, _band(row), _number(row["quantile"]))
         if len(rows) > MOST_ROWS:
-            table.add_row(f"  … and {len(rows) - MOST_ROWS} more in limits.csv", "", "", "")
+            table.add_row(f"  … and {len(rows) - MOST_ROWS} more in limits.csv", "", "", "", "")
     _print(console, "How much can be afforded\n", table, "")
-    least = fewest(found.wanted, found.confidence)
-    if int(found.table["flights"].max()) < least:
-        console.print(f"A cell is shown to be good by {least} flights that all are; with fewer a band stays open.\n")
+    needed = {wanted: fewest(wanted, found.confidence) for wanted in sorted(set(limits["wanted"]))}
+    flights = int(found.table["flights"].max())
+    few = [f"{100.0 * wanted:.6g} % by {count}" for wanted, count in needed.items() if flights < count]
+    if few:
+        console.print(
+            f"A cell is shown to be good at {', '.join(few)} flights that all are; with fewer a band is open.\n"
+        )
 
 
 def _where(found: Sweep, row: "pd.Series[Any]") -> str:
