@@ -65,7 +65,7 @@ class Record:
         self.folder, self.plan = folder, plan
         self._keep = keep
         self._parts = -(-plan.size // PART)
-        self._rows: dict[int, dict[int, dict[str, Any]]] = {}
+        self._rows: dict[int, Part] = {}
         self._traces: dict[int, dict[int, ErrorTrace]] = {}
         self._earlier = 0.0 if before is None else before.wall_time
         self._done = np.zeros(plan.size, dtype=bool)
@@ -88,7 +88,8 @@ class Record:
 
     def keep(self, results: Iterable[tuple[int, Flown]]) -> None:
         """Write finished flights: those that are kept, then the rows of all."""
-        rows, traces = set(), set()
+        rows: dict[int, dict[int, dict[str, Any]]] = {}
+        traces = set()
         try:
             for position, flown in results:
                 index = flown.row["index"]
@@ -97,21 +98,30 @@ class Record:
                 if flown.trace is not None:
                     self._open_traces(position // TRACES_PART)[position] = flown.trace
                     traces.add(position // TRACES_PART)
-                self._open(position // PART)[position] = flown.row
-                rows.add(position // PART)
-                self._done[position] = True
+                rows.setdefault(position // PART, {})[position] = flown.row
         finally:
             for part in traces:
                 self._write_traces(part)
-            for part in rows:
-                self._write_rows(part)
+            for part, new in rows.items():
+                self._write_rows(part, new)
 
-    def _open(self, part: int) -> dict[int, dict[str, Any]]:
-        """Rows of a part by position; those that an earlier run has written are read."""
-        if part not in self._rows:
-            path = self._part(part)
-            self._rows[part] = _rows_of(path, self.plan) if path.is_file() else {}
-        return self._rows[part]
+    def _write_rows(self, number: int, new: dict[int, dict[str, Any]]) -> None:
+        import pyarrow.parquet as pq
+
+        part = self._open(number).with_rows(new)
+        with whole(self._part(number)) as file:
+            pq.write_table(part.table, file)
+        self._rows[number] = part
+        self._done[list(new)] = True
+        if len(part.positions) == min(PART, self.plan.size - number * PART):
+            del self._rows[number]  # it is full
+
+    def _open(self, number: int) -> "Part":
+        """A part that is written; one of an earlier run is read."""
+        if number not in self._rows:
+            path = self._part(number)
+            self._rows[number] = Part.read(path, self.plan) if path.is_file() else Part()
+        return self._rows[number]
 
     def _open_traces(self, part: int) -> dict[int, ErrorTrace]:
         if part not in self._traces:
@@ -119,15 +129,6 @@ class Record:
             found = traces_of(path) if path.is_file() else {}
             self._traces[part] = {position: found[i] for i, position in _by_index(self.plan, found).items()}
         return self._traces[part]
-
-    def _write_rows(self, part: int) -> None:
-        import pyarrow.parquet as pq
-
-        rows = self._rows[part]
-        with whole(self._part(part)) as file:
-            pq.write_table(_table([rows[position] for position in sorted(rows)]), file)
-        if len(rows) == min(PART, self.plan.size - part * PART):
-            del self._rows[part]  # it is full
 
     def _write_traces(self, part: int) -> None:
         import pyarrow.parquet as pq
@@ -193,6 +194,36 @@ class Record:
 
     def _seeds(self, plan: Seeds) -> list[int]:
         return [plan.seeds[position] for position in np.flatnonzero(self._done)]
+
+
+class Part(NamedTuple):
+    """Rows by position, and the positions; kept as they are written, so that a bundle costs what it brings."""
+
+    table: "pa.Table | None" = None
+    positions: tuple[int, ...] = ()
+
+    def with_rows(self, new: Mapping[int, dict[str, Any]]) -> "Part":
+        """The same with more rows, or with others in their place, in the order of the positions."""
+        import pyarrow as pa
+
+        tables = [_table(list(new.values()))]
+        positions = [*new]
+        if self.table is not None:
+            stay = [i for i, position in enumerate(self.positions) if position not in new]
+            tables.append(self.table if len(stay) == len(self.positions) else self.table.take(stay))
+            positions += [self.positions[i] for i in stay]
+        order = np.argsort(positions, kind="stable")
+        table = pa.concat_tables(tables, promote_options="permissive").take(order).combine_chunks()
+        return Part(table, tuple(positions[i] for i in order))
+
+    @classmethod
+    def read(cls, path: Path, plan: Plan) -> "Part":
+        """Read what an earlier run has written."""
+        import pyarrow.parquet as pq
+
+        indices = read_columns(path, ["index"])["index"].tolist()
+        positions = _by_index(plan, indices)
+        return cls(pq.ParquetFile(path).read(), tuple(positions[index] for index in indices))
 
 
 # -- an earlier run ----------------------------------------------------------------------------------------------------
@@ -388,12 +419,6 @@ def _by_index(plan: Plan, indices: Iterable[int]) -> dict[int, int]:
         positions = {seed: position for position, seed in enumerate(plan.seeds)}
         return {int(index): positions[index] for index in indices if index in positions}
     return {int(index): int(index) for index in indices if 0 <= index < plan.size}
-
-
-def _rows_of(path: Path, plan: Plan) -> dict[int, dict[str, Any]]:
-    rows = read_columns(path, None).to_dict("records")
-    positions = _by_index(plan, (row["index"] for row in rows))
-    return {positions[row["index"]]: {str(k): v for k, v in row.items()} for row in rows if row["index"] in positions}
 
 
 def _table(rows: list[dict[str, Any]]) -> "pa.Table":
