@@ -107,9 +107,10 @@ def throughput(scenario: str, pairs: int, flights: int) -> None:
         print(f"pair {number + 1}: {engine_rate:.3f} over {other:.3f} flights/s = {ratios[-1]:.3f}", flush=True)
     loop = loop_cpu(scenario, min(flights, 8))
     print(f"ratio: median {median(ratios):.3f}, from {min(ratios):.3f} to {max(ratios):.3f}")
+    worker, driver = median(workers), median(drivers)
     print(
-        f"CPU a flight: worker {median(workers):.3f} s, driver {median(drivers):.4f} s, loop alone {loop:.3f} s; worker "
-        f"over loop {median(workers) / loop:.2f}, driver over worker {median(drivers) / median(workers):.3f}"
+        f"CPU a flight: worker {worker:.3f} s, driver {driver:.4f} s, loop alone {loop:.3f} s; worker "
+        f"over loop {worker / loop:.2f}, driver over worker {driver / worker:.3f}"
     )
 
 

@@ -62,7 +62,7 @@ class Copy:
         kept = {"PYTHONPATH": str(self.folder), "NUMBA_CACHE_DIR": str(self.folder / cache)}
         began = time.monotonic()
         with (self.folder / "tests.log").open("wb") as log:
-            process = subprocess.Popen(  # noqa: S603 - ours
+            process = subprocess.Popen(
                 command, cwd=self.folder, env=os.environ | kept, stdout=log, stderr=log, start_new_session=True
             )
             self._process = process
