@@ -105,13 +105,10 @@ def throughput(scenario: str, pairs: int, flights: int) -> None:
         workers.append(worker)
         drivers.append(driver)
         print(f"pair {number + 1}: {engine_rate:.3f} over {other:.3f} flights/s = {ratios[-1]:.3f}", flush=True)
-    loop = loop_cpu(scenario, min(flights, 8))
+    loop, worker, driver = loop_cpu(scenario, min(flights, 8)), median(workers), median(drivers)
     print(f"ratio: median {median(ratios):.3f}, from {min(ratios):.3f} to {max(ratios):.3f}")
-    worker, driver = median(workers), median(drivers)
-    print(
-        f"CPU a flight: worker {worker:.3f} s, driver {driver:.4f} s, loop alone {loop:.3f} s; worker "
-        f"over loop {worker / loop:.2f}, driver over worker {driver / worker:.3f}"
-    )
+    print(f"CPU a flight: worker {worker:.3f} s, driver {driver:.4f} s, loop alone {loop:.3f} s")
+    print(f"worker over loop {worker / loop:.2f}, driver over worker {driver / worker:.3f}")
 
 
 def memory(counts: list[int]) -> None:
@@ -171,8 +168,8 @@ def capacity() -> None:
         busy = tasks * cpu + CORES / seconds * write * 5 / bundle
         hours = MILLION * seconds / CORES / 3600
         print(
-            f"{MILLION} flights of {seconds} s on {CORES} cores: {hours:.1f} h; bundles of {bundle}: {tasks:.0f} tasks/s, "
-            f"driver busy {100 * busy:.0f} %, rows {MILLION * size / 1e9:.1f} GB"
+            f"{MILLION} flights of {seconds} s on {CORES} cores: {hours:.1f} h; bundles of {bundle}: {tasks:.0f} tasks "
+            f"a second, driver busy {100 * busy:.0f} %, rows {MILLION * size / 1e9:.1f} GB"
         )
 
 
