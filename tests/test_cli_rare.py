@@ -20,7 +20,7 @@ def test_a_false_launch_is_written_and_printed_in_eighty_columns(tmp_path: Path)
         "--seconds",
         "1",
         "--sigma",
-        "0.2",
+        "0.35",
         "--out",
         str(tmp_path / "a"),
         *HOLD,

@@ -60,7 +60,7 @@ def test_what_cannot_be_reached_has_a_bound_and_says_so() -> None:
     found = estimate(Watch(HOLD, np.zeros(1000), 0.5, push=70.0), seed=1, budget=300)
     assert not found.reached
     assert found.probability == 0.0
-    assert 0.0 < found.high <= 0.2
+    assert 0.0 < found.high <= 0.5
 
 
 def test_subset_simulation_finds_a_linear_limit_and_what_fails_first() -> None:

@@ -271,7 +271,7 @@ def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
         return _from_subset(found, problem, seed)
     left = budget - found.evaluations
     values, failures = _around(problem, found, left, max(1.0, subset.P0 * samples), np.random.default_rng(second))
-    if not shifted.trusted(values, found.probability, found.variation):
+    if not shifted.trusted(values, found.probability, _between(found)):
         return _from_subset(found, problem, seed, work=budget)
     probability = float(values.mean())
     variation = float(values.std(ddof=1)) / probability / sqrt(len(values))
@@ -377,7 +377,7 @@ def _factor(values: Floats) -> float:
 
 
 def _from_subset(found: subset.Subset, problem: Inputs, seed: int, work: int | None = None) -> Estimate:
-    variation = sqrt(found.variation * sum(level.variation for level in found.levels))
+    variation = _between(found)
     low, high = interval(found.probability, variation)
     used = found.evaluations if work is None else work
     return Estimate(
@@ -393,6 +393,11 @@ def _from_subset(found: subset.Subset, problem: Inputs, seed: int, work: int | N
         failures=_most_likely(found.failures, problem.dimension - problem.whole),
         names=problem.names,
     )
+
+
+def _between(found: subset.Subset) -> float:
+    """Coefficient of variation between those of levels that are independent and that go together."""
+    return sqrt(found.variation * sum(level.variation for level in found.levels))
 
 
 def _incomplete(found: subset.Subset, problem: Inputs, seed: int) -> Estimate:

@@ -88,8 +88,8 @@ def _maximise(u: Floats, share: Floats, groups: int, rng: np.random.Generator) -
 
 
 def trusted(values: Floats, pilot: float, pilot_variation: float) -> bool:
-    """Whether an estimate from weighted failures agrees with subset simulation's, and hangs on no single sample."""
+    """Whether an estimate from weighted failures is not far below subset simulation's, and hangs on no single sample."""
     total = float(values.sum())
     if not total > 0.0 or float(values.max()) > LARGEST_SHARE * total:
         return False
-    return bool(abs(float(np.log(values.mean() / pilot))) < 3.0 * np.sqrt(np.log1p(pilot_variation**2)) + 0.5)
+    return bool(float(np.log(pilot / values.mean())) < 3.0 * np.sqrt(np.log1p(pilot_variation**2)) + 0.5)
