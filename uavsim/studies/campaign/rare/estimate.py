@@ -4,7 +4,7 @@ What is asked decides how:
 
     Watch               alarms of a detector in white noise: importance splitting along time (`splitting`), a pilot and
                         ten independent runs; interval from the ten, Student's t on the logarithm
-    Inputs, up to 30    subset simulation finds failures, importance sampling around them (`shifted`) tells how many;
+    Inputs, up to 20    subset simulation finds failures, importance sampling around them (`shifted`) tells how many;
                         normal interval on the logarithm. Where the two do not agree, or the weights hang on one
                         sample, a second subset simulation takes the place of the second half
     Inputs, more        subset simulation alone
@@ -260,7 +260,7 @@ def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
     first, second = np.random.SeedSequence(seed).spawn(2)
     around = problem.dimension - problem.whole
     finish = 0 < around <= shifted.MOST_INPUTS
-    if finish and problem.whole:
+    if problem.whole and 0 < around <= shifted.MOST_BESIDE_NOISE:
         return _cross_entropy(problem, seed, budget, np.random.default_rng(first))
     share = PILOT if finish else 1.0
     samples = int(share * budget / (1.0 + (1.0 - subset.P0) * DEEPEST))
