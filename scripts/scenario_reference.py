@@ -134,6 +134,10 @@ _NONE = {
     "estimator": "by the gain",
     "normal": "by port",
     "direction": "by port",
+    "mean": "the key's own",
+    "sd": "none",
+    "low": "none",
+    "high": "none",
     "minimum": "none",
     "maximum": "none",
 }
@@ -179,11 +183,16 @@ def _allowed(hint: Any) -> str:
     if origin in (Union, types.UnionType):
         return " or ".join(filter(None, map(_allowed, get_args(hint))))
     if origin is tuple:
-        members = [m for m in get_args(hint) if m is not Ellipsis]
-        if is_dataclass(members[0]):
-            return "list of groups, below"
-        return f"list of {_allowed(members[0])}" if len(members) == 1 else f"list of {len(members)} numbers"
+        return _allowed_list([m for m in get_args(hint) if m is not Ellipsis])
     return _WORDS[hint] if origin is None else _DICTIONARIES[get_args(hint)[1]]
+
+
+def _allowed_list(members: list[Any]) -> str:
+    if is_dataclass(members[0]):
+        return "list of groups, below"
+    if len(members) == 1:
+        return f"list of {_allowed(members[0])}"
+    return f"list of {len(members)} {'texts' if members[0] is str else 'numbers'}"
 
 
 if __name__ == "__main__":

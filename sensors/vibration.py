@@ -12,7 +12,7 @@ is felt: it goes through the bandwidth and can alias.
 """
 
 from collections.abc import Callable, Iterator
-from itertools import chain, count, cycle, islice
+from itertools import chain, count, islice
 from math import ceil, inf, isfinite, pi, radians
 
 import numpy as np
@@ -87,7 +87,7 @@ class Vibration:
         self._released = ceil(release_time / dt) if isfinite(release_time) else inf
         self._sources = _sources(settings, streams, dt, scale * G0)
         self._k = 0
-        waiting = _endless(self._unit * settings.waiting_rms_g, 0)
+        waiting = _endless(self._unit, settings.waiting_rms_g, 0)
         if not isfinite(release_time):
             self._shake(waiting, aloft=False)
             return
@@ -97,10 +97,9 @@ class Vibration:
         grown = np.minimum(tau / rise, 1.0) if rise > 0.0 else np.ones_like(tau)
         envelope = grown * np.exp(-np.maximum(tau - rise, 0.0) / settings.ring_decay)
         ring = envelope * np.sin(2.0 * np.pi * settings.ring_hz * tau)
-        stroke = self._unit * settings.stroke_rms_g
-        ringing = np.take(stroke, np.arange(released, released + tau.size), axis=0, mode="wrap")
+        ringing = _rows(self._unit, released, tau.size) * settings.stroke_rms_g
         ringing[:, 0] += ring * (scale * settings.ring_fraction * plateau)
-        rest = _endless(stroke, released + tau.size)
+        rest = _endless(self._unit, settings.stroke_rms_g, released + tau.size)
         self._shake(chain(islice(waiting, released), ringing.tolist(), rest), aloft=False)
 
     def on(self, force: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -110,7 +109,7 @@ class Vibration:
 
     def leave_rail(self, t: float) -> None:
         """Go over to the vibration of flight: the next step has the noise of the plant step at time `t`."""
-        self._shake(_endless(self._unit * self._flight_rms, round(t / self._dt)), aloft=True)
+        self._shake(_endless(self._unit, self._flight_rms, round(t / self._dt)), aloft=True)
 
     def _shake(self, noise: Iterator[Row], aloft: bool) -> None:
         """Go on with these rows, and with the tones and spectra of the phase if there are any."""
@@ -172,6 +171,14 @@ def _periodic(table: Array) -> Callable[[NDArray[np.int64]], Array]:
     return lambda k: np.take(table, k, axis=0, mode="wrap")
 
 
-def _endless(table: Array, start: int) -> Iterator[list[float]]:
-    """Return the rows of a periodic table for ever, beginning with row `start`."""
-    return cycle(np.roll(table, -start, axis=0).tolist())
+def _rows(table: Array, first: int, number: int) -> Array:
+    """Return rows of a periodic table."""
+    return np.take(table, np.arange(first, first + number), axis=0, mode="wrap")
+
+
+def _endless(table: Array, factor: float, start: int) -> Iterator[list[float]]:
+    """Return the rows of a periodic table times `factor`, for ever, beginning with row `start`.
+
+    They are made a block at a time: a flight needs a few thousand of a phase, and a phase may never come.
+    """
+    return chain.from_iterable((_rows(table, first, BLOCK) * factor).tolist() for first in count(start, BLOCK))

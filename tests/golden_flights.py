@@ -35,7 +35,8 @@ PLACE = (
 RAIL = (
     "launcher.heading_deg=35", "launcher.elevation_deg=17", "launcher.peak_specific_force_g=9.5", "launcher.rise=0.021",
     "launcher.fall=0.043", "launcher.stroke=4.4", "launcher.height=2.6", "launcher.friction=0.06",
-    "launcher.force_spread=0.05", "launcher.wait_min=1.7", "launcher.wait_max=2.3", "plant.step_rate=2000",
+    "launcher.force_spread=0.05", "launcher.force_factor=1.07",
+    "launcher.wait_min=1.7", "launcher.wait_max=2.3", "plant.step_rate=2000",
 )  # fmt: skip
 SHAKING = (
     "vibration.waiting_rms_g=0.09", "vibration.stroke_rms_g=0.6", "vibration.flight_rms_g=0.12",
@@ -107,10 +108,19 @@ AIDED = (
     "estimator.aided.bias_rate=0.003", "estimator.aided.static_walk=0.4", "estimator.aided.on_rail=25",
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
     "mismatch.acceleration_calibration=0.5", "flight_computer.speed_gain_min=12",
-    "aircraft.properties.ap/gain/pitch=0.3",
+    "aircraft.properties.ap/gain/pitch=0.3", "aircraft.mass_factor=1.06", "aircraft.cg_shift=-0.008",
+    "aircraft.lift_factor=0.95", "aircraft.drag_factor=1.15", "aircraft.pitch_factor=1.1",
+    "aircraft.thrust_factor=0.93",
     "aircraft.properties.inertia/pointmass-weight-lbs[1]=0.9",  # the right wing, which is 0.57 lb else: nothing is even
 )  # fmt: skip
 CLIMB = ("flight_computer.height=200", "flight_computer.climb_pitch_deg=5", "flight_computer.height_gain=0.01")
+DISPERSED = (
+    'dispersions=[{key="aircraft.mass_factor",distribution="normal",sd=0.02},'
+    '{key="launcher.friction",distribution="truncated-normal",mean=0.02,sd=0.02,low=0},'
+    '{key="aircraft.lift_factor",distribution="normal",sd=0.05,relative=true},'
+    '{key="launcher.elevation_deg",distribution="uniform",low=11,high=14},'
+    '{key="air_data.static.iir",distribution="choice",values=[0,2,4],weights=[1,2,1]}]'
+)
 NOT_TWICE = ("launcher.wait_min=1.7", "launcher.wait_max=1.9")  # a short wait: the flight is what is wanted
 
 
@@ -179,7 +189,10 @@ FLIGHTS: dict[str, Wanted] = {
         *NOT_TWICE, "duration=7", 'estimator.kind="paper"', 'estimator.model="bernoulli"', "estimator.gain_total=0.6",
         "estimator.gain_static=0.4", "launcher.peak_specific_force_g=12",
     )),
-    "constant-velocity": ("rough-rail", 21, (*NOT_TWICE, "index=3", "duration=6", 'estimator.kind="constant-velocity"')),
+    "constant-velocity": ("rough-rail", 21, (
+        *NOT_TWICE, "index=3", "duration=6", 'estimator.kind="constant-velocity"', DISPERSED,
+        'correlations=[{between=["aircraft.mass_factor","aircraft.lift_factor"],coefficient=0.6}]',
+    )),
     "opens-on-the-rail": ("catapult", 26, (
         "launcher.wait_min=2.8", "launcher.wait_max=2.9", "duration=5",
         'accelerometer.faults=[{kind="offset",start=1.2,stop=1.45,size=95,axis="x"},{kind="dropout",start=3.3,stop=4}]',

@@ -8,8 +8,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,8 +20,9 @@ from uavsim import cli, cosim, files
 from uavsim.cli import common
 from uavsim.flight import UNITS, load
 from uavsim.scenario import load_scenario
-from uavsim.studies import batch
+from uavsim.studies import engine
 from uavsim.studies.batch import fly_seeds
+from uavsim.studies.engine import InTurn, Left
 from uavsim.views import batch as view
 
 if os.name != "posix":
@@ -124,6 +126,7 @@ def kept(folder: Path) -> pd.DataFrame:
         "runs.parquet",
         "flights",
         "plots",
+        "traces",
         ".scratch",
     }
     assert described(folder)["complete"] in (True, False)
@@ -251,21 +254,21 @@ def test_flights_of_a_worker_that_is_killed_are_flown_again(tmp_path: Path, star
     assert described(tmp_path / "here")["complete"] is True
 
 
-def test_a_flight_that_kills_its_process_twice_is_reported_with_the_command_that_flies_it(
+def test_a_flight_that_kills_its_process_is_reported_with_the_command_that_flies_it(
     tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Here of four seeds the second and third; `test_processes` tells how they are lost."""
+    """Here of four seeds the second and third; `test_engine` tells how they are lost."""
 
-    def each(work: Callable[..., object], given: list[tuple[int, int]], *, done: batch.Finished, **_: int) -> list[int]:
-        done([(position, work(given[position])) for position in (3, 0)])  # type: ignore[misc]
-        return [1, 2]
+    class Losing(InTurn):
+        def each(self, work: Any, given: Any, *, done: Any, limit: float | None = None) -> list[Left]:
+            done([(position, work(given[position])) for position in (3, 0)])
+            return [Left(position, "its worker died 3 times") for position in (1, 2)]
 
-    monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    monkeypatch.setattr(batch, "each", each)
+    monkeypatch.setattr(engine, "engine", lambda **_: nullcontext(Losing()))
     assert run("fly", "catapult", *EXPECTED, "--seeds", "1-3,9", "--out", "here") == 1
     changes = " ".join(f"--set '{c}'" if "[" in c else f"--set {c}" for c in (*CHANGES, "expect=timeout"))
     assert capsys.readouterr().err == (
-        "unfinished: seed 2-3, whose process died twice; what is left is flown by: "
+        "unfinished: seed 2-3: its worker died 3 times; what is left is flown by: "
         f"uavsim fly catapult {changes} --seeds 2-3\n"
     )
     assert kept(tmp_path / "here")["seed"].tolist() == [1, 9]
@@ -310,19 +313,16 @@ def test_several_that_are_interrupted_keep_what_was_finished(
     assert alive(flying.pid) == []
 
 
-@pytest.mark.parametrize("slow", ["_describe", "save_batch_plots"])
+@pytest.mark.parametrize("slow", ["bound_of", "save_batch_plots"])
 def test_an_interrupt_of_what_follows_keeps_all_flights(
     tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], slow: str
 ) -> None:
     """While the bound is computed, or plots are drawn; one that is a second one, too."""
-    describe = view.Record._describe
 
-    def interrupt(*arguments: object, bound: bool = False) -> None:
-        if slow != "_describe" or bound:
-            raise KeyboardInterrupt
-        describe(*arguments)  # type: ignore[arg-type]
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
 
-    monkeypatch.setattr(view.Record if slow == "_describe" else view, slow, interrupt)
+    monkeypatch.setattr(view, slow, interrupt)
     assert run("fly", *SETS, "--seeds", "2", "--out", "here") == 130
     assert capsys.readouterr().err == "interrupted: 1 of 1 flights are kept; not all plots are drawn\n"
     assert described(tmp_path / "here")["seeds"] == [2]

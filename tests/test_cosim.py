@@ -1,11 +1,13 @@
 """The loop on real flights: one seed is one flight, onboard sees readings and nothing else, order and time hold."""
 
+import gc
 import hashlib
 import itertools
 import json
 import math
 import subprocess
 import sys
+import weakref
 from collections.abc import Callable
 from dataclasses import replace
 from inspect import signature
@@ -103,6 +105,30 @@ def test_the_same_seed_is_the_same_flight_in_another_process(scenario: str) -> N
         for name, table in flight.tables.items()
     }
     assert json.loads(other.stdout) == json.loads(json.dumps([flight.events, flight.score, digests]))
+
+
+THREADS = """
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from uavsim.cosim import flown
+from uavsim.scenario import load_scenario
+sys.setswitchinterval(1e-4)
+scenarios = [load_scenario(name, overrides=["duration=4.5"]) for name in ("catapult", "gusty")] * 2
+alone = [flown(scenario) for scenario in scenarios[:2]] * 2
+with ThreadPoolExecutor(len(scenarios)) as threads:
+    together = list(threads.map(flown, scenarios))
+for one, other in zip(alone, together, strict=True):
+    assert one.events == other.events and one.score == other.score
+    assert all(table.equals(other.tables[name]) for name, table in one.tables.items())
+print("the same")
+"""
+
+
+def test_flights_in_several_threads_are_what_each_is_alone_and_the_threads_ends_are_harmless() -> None:
+    """JSBSim has a logger for each thread and lets go of it when that ends, without the interpreter's lock."""
+    found = subprocess.run([sys.executable, "-c", THREADS], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stdout) == (0, "the same\n"), found.stderr
 
 
 def test_another_flight_before_it_changes_nothing(launch: Flight) -> None:
@@ -794,6 +820,22 @@ def test_a_noisier_head_is_believed_to_be_noisier() -> None:
     plain, scaled = (resting(f"air_data.{c}.noise_scale={s}", wait=2.0) for c, s in (("total", 1), ("total", 5)))
     wide = [f.estimate["airspeed_sd"].iloc[-25:].mean() for f in (plain, scaled)]
     assert wide[1] > wide[0]
+
+
+@pytest.mark.parametrize("scenario", ["catapult", "gusty"])
+def test_a_plant_goes_with_its_flight_and_does_not_wait_for_the_collector(scenario: str) -> None:
+    """Its record takes 300 B a step: flights of a campaign that are over must not add up."""
+    simulation = Cosimulation(short("duration=4.5", scenario=scenario))
+    plant = weakref.ref(simulation.plant)
+    gc.collect()
+    gc.disable()
+    try:
+        flight = flown(simulation)
+        del simulation
+        assert plant() is None
+    finally:
+        gc.enable()
+    assert flight.truth["t"].iloc[-1] == 4.5
 
 
 def test_force_of_the_launcher_is_a_key() -> None:

@@ -11,7 +11,7 @@ import re
 import shutil
 import tomllib
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args, get_origin
@@ -26,9 +26,10 @@ import uavsim
 from sensors import presets
 from uavsim.flight import Flight, write_toml
 from uavsim.plants.hangar import hangar
-from uavsim.scenario import PACKAGED, Scenario, keys, load_scenario, packaged
+from uavsim.scenario import PACKAGED, Scenario, keys, load_scenario, packaged, packaged_names
 from uavsim.score_keys import NUMBERS
 from uavsim.settings import SMALLEST_NUMBER, hint_of
+from uavsim.studies.batch import fly_seeds
 
 KEYS = keys()
 
@@ -131,7 +132,7 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
             "each a list of a number above 0 and below 500 and a number above 0 and of",
         ),
         ("name=\udcff", "must be text"),
-        ("requirements=3", "must be a list, each a group of key, minimum and maximum"),
+        ("requirements=3", "must be a list, each a group of key, statistic, equals, minimum"),
         ('requirements=[{key="airspeed.rmse", maximun=1}]', "unknown key 'maximun' in requirements[0]"),
         ('requirements=[{key="airspeed.rmse", maximun=1}]', "did you mean 'maximum'?"),
         ("requirements=[{maximum=1}]", "requirements[0]: key is missing"),
@@ -296,6 +297,20 @@ def test_values_may_leave_out_their_quotes_but_keep_their_type() -> None:
     assert chosen.detector.rearm is False
     assert chosen.accelerometer.bias == (0.0, 0.1, -0.2)
     assert chosen.aircraft.properties == {"wing/opening-rate-per_sec": 3.0, "inertia/pointmass-weight-lbs[1]": 0.1}
+
+
+@pytest.mark.parametrize("name", packaged_names())
+def test_another_seed_gives_what_reading_it_with_that_seed_gives(name: str) -> None:
+    scenario = load_scenario(name)
+    assert scenario.with_seed(7) == load_scenario(name, seed=7) == scenario.with_seed(7).checked()
+
+
+def test_what_was_made_in_python_is_checked_when_it_is_flown_and_not_by_another_seed() -> None:
+    made = replace(Scenario(), duration=0.5)
+    assert made.with_seed(2) == replace(made, seed=2)
+    for fly in (uavsim.fly, partial(uavsim.fly, seed=2), Scenario.checked, partial(fly_seeds, seeds=[1])):
+        with pytest.raises(ValueError, match=r"^scenario: duration = 0.5: must be"):
+            fly(made)
 
 
 def test_numpy_numbers_are_numbers() -> None:

@@ -17,15 +17,34 @@ if TYPE_CHECKING:
     from uavsim.flight import Flight as Flight
     from uavsim.flight import load as load
     from uavsim.scenario import Scenario as Scenario
+    from uavsim.studies.campaign.campaign import campaign as campaign
+    from uavsim.studies.campaign.sweep import sweep as sweep
+    from uavsim.studies.campaign.verify import verify as verify
 
 __version__ = "0.1.0"
-__all__ = ["Flight", "Scenario", "__version__", "airdata", "fly", "load", "onboard", "plugins", "testing"]
+__all__ = [
+    "Flight",
+    "Scenario",
+    "__version__",
+    "airdata",
+    "campaign",
+    "fly",
+    "load",
+    "onboard",
+    "plugins",
+    "sweep",
+    "testing",
+    "verify",
+]
 
 _HOMES = {
     "fly": "uavsim.cosim",
     "Flight": "uavsim.flight",
     "load": "uavsim.flight",
     "Scenario": "uavsim.scenario",
+    "campaign": "uavsim.studies.campaign.campaign",
+    "sweep": "uavsim.studies.campaign.sweep",
+    "verify": "uavsim.studies.campaign.verify",
 }
 
 

@@ -8,18 +8,23 @@ the flight computer takes it; its commands act from the plant's next step on.
 """
 
 import math
+from array import array
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from operator import attrgetter
 from pathlib import Path
+from struct import Struct
 from typing import TYPE_CHECKING, Any
+from weakref import proxy
 
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
 from uavsim.beliefs import believed_air, believed_noise, calibrated
+from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
@@ -40,6 +45,7 @@ if TYPE_CHECKING:
 CHUNK = 500  # steps between two looks at the progress
 DETECTOR_LEAD = 1.0  # s before release from which the detector's state is recorded
 DETECTOR_TRAIL = 0.1  # s after recognition until which it is
+READING = Struct("4d")  # of the accelerometer: time stamp, s, and specific force, m/s²
 
 Progress = Callable[[float], None]
 """Called now and then with the share of the flight that is done, 0 … 1."""
@@ -59,7 +65,8 @@ class Draws:
 def draw(scenario: Scenario, index: int | None = None) -> Draws:
     """Draw the launch of flight `index`, or the scenario's own, of the campaign `scenario.seed`.
 
-    The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch.
+    The latch lets go on a step of the coarsest rate, which is one of every other: all of them fly the same launch. The
+    force factor is that of the specific force: the catapult is set for an aircraft of the mass that it should have.
     """
     streams = Streams(scenario.seed, scenario.index if index is None else index)
     launcher = scenario.launcher
@@ -67,7 +74,7 @@ def draw(scenario: Scenario, index: int | None = None) -> Draws:
     spread = launcher.force_spread
     return Draws(
         release_time=round(wait * STEP_RATES[0]) / STEP_RATES[0],
-        force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)),
+        force_factor=float(streams("launcher.force").uniform(1.0 - spread, 1.0 + spread)) * scenario.push_factor,
         plant_seed=streams.integer("plant"),
         calibration=calibrated(scenario, streams),
     )
@@ -175,13 +182,13 @@ class Cosimulation:
     Parameters
     ----------
     scenario
-        What to fly.
+        What to fly; its dispersions are drawn (`uavsim.dispersions`).
     plant
         Instead of the scenario's own; for tests.
     """
 
     def __init__(self, scenario: Scenario, plant: Plant | None = None) -> None:
-        self.scenario = scenario
+        self.scenario = scenario = resolved(scenario, scenario.index)
         self.draws = draw(scenario)
         self.plant = make_plant(scenario, self.draws) if plant is None else plant
         streams = Streams(scenario.seed, scenario.index)
@@ -198,10 +205,11 @@ class Cosimulation:
             scale=scenario.accelerometer.vibration_scale,
         )
         air = scenario.air_data
+        around = proxy(self.plant)  # sensors hold themselves, and with them a plant, until the collector comes
         self.head = AirDataHead(
             air,
             streams,
-            self.plant,
+            around,
             dt=dt,
             covered_until=release - air.cover_off if air.tare == "covered" else -math.inf,
         )
@@ -209,11 +217,11 @@ class Cosimulation:
             scenario.accelerometer,
             streams,
             dt=dt,
-            surroundings=self.plant,
+            surroundings=around,
         )
         self.onboard = Onboard(scenario, release, self.draws.calibration)
-        self.readings: list[float] = []  # flat: plain floats cost the collector nothing
-        self.air_readings: list[float] = []
+        self.readings = array("d")  # flat, as the bytes of a table: neither the collector nor the end pays for floats
+        self.air_readings = array("d")
         self.steps = round(scenario.duration * scenario.plant.step_rate)
         self.ended = self.reason = ""
         with self._told():
@@ -240,7 +248,8 @@ class Cosimulation:
             self.accelerometer.step,
             head.feel if head.full else None,
         )
-        keep, take, computer = self.readings.extend, onboard.accelerometer, onboard.computer
+        keep, pack = self.readings.frombytes, READING.pack
+        take, computer = onboard.accelerometer, onboard.computer
         on_rail, commands = plant.on_rail, computer.commands
         air: Sequence[AirReading]
         for _ in range(min(steps, self.steps - plant.k)):
@@ -257,8 +266,8 @@ class Cosimulation:
             for reading in readings:
                 if air and air[0][0] < reading[0]:
                     air = self._take_air(air, reading[0])
-                keep(reading)
                 due, fx, fy, fz = reading  # `take(*reading)` costs twice as much
+                keep(pack(due, fx, fy, fz))
                 take(due, fx, fy, fz)
             if air:
                 self._take_air(air, math.inf)
@@ -371,9 +380,13 @@ def fly(
     if not isinstance(scenario, Scenario):
         settings = load_scenario(scenario, overrides=overrides, seed=seed)
     else:
-        settings = scenario.with_seed(scenario.seed if seed is None else seed)  # validates one that was made by hand
-    settings = with_kinds(settings, detector=detector, estimator=estimator, plant=plant)
-    simulation = Cosimulation(settings)
+        settings = (scenario if seed is None else scenario.with_seed(seed)).checked()
+    return flown(with_kinds(settings, detector=detector, estimator=estimator, plant=plant), progress)
+
+
+def flown(scenario: Scenario, progress: Progress | None = None) -> Flight:
+    """Fly a scenario that has been checked, as one that was read or is another's with another seed; else as `fly`."""
+    simulation = Cosimulation(scenario)
     while not simulation.ended:
         simulation.advance(CHUNK)
         if progress is not None:
@@ -433,5 +446,7 @@ def _flight(simulation: Cosimulation) -> Flight:
     return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)
 
 
+@cache
 def _versions() -> dict[str, str]:
+    """Versions of what flies; a score takes a copy."""
     return {"uavsim": __version__, **{name: version(name) for name in ("jsbsim", "numpy", "scipy", "filterpy")}}

@@ -7,6 +7,7 @@ metadata, and ``plots/``. It is whole or not there, see `uavsim.folders`.
 """
 
 import os
+from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -235,8 +236,8 @@ def frame_of_rows(name: str, rows: list[tuple[Any, ...]]) -> "pd.DataFrame":
     return table.astype(told) if told else table
 
 
-def frame_of_floats(name: str, values: list[float]) -> "pd.DataFrame":
-    """Table `name` from one flat list of floats, row after row."""
+def frame_of_floats(name: str, values: "array[float]") -> "pd.DataFrame":
+    """Table `name` from one flat array of floats, row after row."""
     import numpy as np
     import pandas as pd
 

@@ -89,6 +89,10 @@ class Registry(Generic[K]):
     def __len__(self) -> int:
         return len(self._kinds)
 
+    def get(self, name: str) -> K | None:
+        """Kind of a name, None if nobody has registered it."""
+        return self._kinds.get(name)
+
     def values(self) -> Iterator[K]:
         """The kinds themselves."""
         return iter(self._kinds.values())

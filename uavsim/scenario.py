@@ -8,10 +8,10 @@ cannot tell one by one is checked here.
 import math
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from annotated_types import Interval
 
@@ -37,17 +37,19 @@ from uavsim.plants.plant import STEP_RATES
 from uavsim.plants.rail import CONTACT_FREQUENCY, DAMPING_RATIO
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
 from uavsim.plugins import PluginError, Source, check_options, find, of_class, plugged_in, source_of
-from uavsim.score_keys import NUMBERS
+from uavsim.requirements import Requirement
+from uavsim.requirements import check as check_requirements
+from uavsim.score_keys import Outcome
 from uavsim.settings import SettingError
+from uavsim.spread import Correlation, Dispersion
+from uavsim.spread.check import check as check_spread
+from uavsim.spread.key import find as find_key
 
 if TYPE_CHECKING:
     from uavsim.flight import Flight
 
 Belief = Annotated[float, Interval(ge=0.0, le=1000.0)]
-Outcome = Literal[
-    "cruise", "missed_launch", "false_launch", "crashed", "landed", "diverged", "onboard_failed", "timeout",
-    "completed",
-]  # fmt: skip
+Drawn = Annotated[int, Interval(ge=0, le=2**63 - 1)]
 
 PACKAGED = Path(__file__).resolve().parent / "scenarios"
 PROPERTIES = "aircraft.properties."
@@ -57,23 +59,6 @@ WEATHER = "environment.preset"
 MOST_STEPS = 3_600_000  # of the plant in a flight, an hour at the coarsest step; their truth takes 2 GB
 MOST_READINGS = 6_000_000  # of one sensor in a flight, which take 1.4 GB and a minute
 NAME = r"(?!.*[\u115f\u1160\u3164\uffa0])[^\W_][\w .+-]{0,99}"  # without the letters of Unicode that have no ink
-
-
-@dataclass(frozen=True, slots=True)
-class Requirement:
-    """A bound on a number of the score, `minimum` ≤ value ≤ `maximum`; see [score.md](score.md).
-
-    Attributes
-    ----------
-    key
-        Of the score, joined by dots; null meets no bound.
-    minimum, maximum
-        Bounds, in the number's own unit.
-    """
-
-    key: str
-    minimum: float | None = None
-    maximum: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,8 +129,12 @@ class Scenario:
         Number of the flight under this seed: each draws its own.
     expect
         The outcome that counts as success.
+    dispersions
+        What is drawn anew for each flight; a flight's own scenario has them drawn, and none left.
+    correlations
+        How those go together.
     requirements
-        Bounds on figures of the score.
+        Bounds on figures of the score, of each flight or of many.
     plugins
         Who flies that is not ours; written into a flight's folder, and then only they may fly it.
     """
@@ -153,8 +142,8 @@ class Scenario:
     name: str = "scenario"
     description: str = ""
     duration: Annotated[float, Interval(ge=1, le=3600)] = 35.0
-    seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 1
-    index: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 0
+    seed: Drawn = 1
+    index: Drawn = 0
     expect: Outcome = "cruise"
     plant: PlantSettings = field(default_factory=PlantSettings)
     aircraft: AircraftSettings = field(default_factory=AircraftSettings)
@@ -167,6 +156,8 @@ class Scenario:
     estimator: EstimatorSettings = field(default_factory=EstimatorSettings)
     mismatch: MismatchSettings = field(default_factory=MismatchSettings)
     flight_computer: FlightComputerSettings = field(default_factory=FlightComputerSettings)
+    dispersions: tuple[Dispersion, ...] = ()
+    correlations: tuple[Correlation, ...] = ()
     requirements: tuple[Requirement, ...] = ()
     plugins: tuple[Source, ...] = ()
 
@@ -195,9 +186,39 @@ class Scenario:
         axes = self.detector.axes
         return "+x" if self.plant.chosen.flies or isinstance(axes, str) or len(axes) != 1 else axes[0]
 
+    @property
+    def push_factor(self) -> float:
+        """What the push gives, over the specific force that the catapult is set for; it knows no aircraft's mass."""
+        factor = self.launcher.force_factor
+        return factor / self.aircraft.mass_factor if self.plant.chosen.flies else factor
+
     def with_seed(self, seed: int) -> "Scenario":
-        """The same scenario with other draws."""
-        return Scenario.from_dict({**self.to_dict(), "seed": seed})
+        """The same scenario with other draws; only the seed is checked, a flight of many costs no more than that.
+
+        Raises
+        ------
+        ValueError
+            One line: what a seed may be.
+        """
+        try:
+            return replace(self, seed=settings.read(_Seed, {"seed": seed}).seed)
+        except SettingError as error:
+            raise ValueError(f"scenario: {error.problem}") from None
+
+    def checked(self) -> "Scenario":
+        """The same, checked like one that was read: one that was made in Python, or by `replace`, was not.
+
+        Raises
+        ------
+        ValueError
+            As `from_dict`.
+        """
+        return Scenario.from_dict(self.to_dict())
+
+
+@dataclass(frozen=True, slots=True)
+class _Seed:
+    seed: Drawn
 
 
 def scenario_of(flight: "Flight") -> Scenario:
@@ -262,7 +283,7 @@ def load_scenario(
         if seed is not None:
             values["seed"], origins["seed"] = seed, seed_name
         scenario = _checked(values)
-        _check_requirements(scenario)
+        check_requirements(scenario.requirements)  # a record keeps what it was judged by, whatever a score has now
     except SettingError as error:
         given = [origin for key in error.keys for k, origin in origins.items() if _within(k, key) or _within(key, k)]
         raise ValueError(f"{[*given, where][0]}: {error.problem}") from None
@@ -316,7 +337,7 @@ def _apply(values: dict[str, Any], override: str) -> str:
     declared = not key.startswith((PROPERTIES, *OPTIONS))  # JSBSim's names hold slashes and may hold dots
     if declared and key not in keys():
         raise ValueError(f"--set: {settings.unknown(Scenario, key).problem}")
-    value = _value(text)
+    value = value_of_text(text)
     is_text = declared and settings.hint_of(Scenario, key) is str
     _set(values, key, text if is_text and not isinstance(value, str) else value)
     return key
@@ -337,7 +358,7 @@ def _set(values: dict[str, Any], key: str, value: Any) -> None:
     group[last] = value
 
 
-def _value(text: str) -> Any:
+def value_of_text(text: str) -> Any:
     """Read a value as TOML has it; what is none is text."""
     try:
         found = parse_toml(f"value = {text}")
@@ -359,13 +380,99 @@ def _checked(values: Mapping[str, Any]) -> Scenario:
     """
     values = _with_weather(values)
     scenario = _with_plugins(_with_inputs(settings.read(Scenario, values), values))
+    _check_together(scenario)
+    check_spread(scenario, _with_values)
+    return scenario
+
+
+def _check_together(scenario: Scenario) -> None:
+    """Refuse what single bounds cannot tell.
+
+    Raises
+    ------
+    SettingError
+        On the first thing that is wrong.
+    """
     for check in (
         _check_name, _check_properties, _check_step, _check_times, _check_air, _check_sensors, _check_cost,
         _check_vibration,
         _check_directions, _check_faults, _check_detector,
     ):  # fmt: skip
         check(scenario)
-    return scenario
+
+
+def with_values(s: Scenario, values: Mapping[str, Any]) -> Scenario:
+    """The same scenario with other values of some keys, and what came from outside as it was read.
+
+    Parameters
+    ----------
+    s
+        A scenario that was checked.
+    values
+        By key (`uavsim.spread.key`): joined by dots, an entry of a list as `KEY[0]`, a property by its name.
+
+    Raises
+    ------
+    ValueError
+        One line that names the key and what is allowed; `keys` are those concerned.
+    """
+    try:
+        return _with_values(s, values)
+    except SettingError as error:
+        raise ImpossibleError(error) from None
+
+
+class ImpossibleError(ValueError):
+    """Values that a scenario cannot have; one line.
+
+    Attributes
+    ----------
+    keys
+        Those concerned.
+    """
+
+    def __init__(self, error: SettingError) -> None:
+        super().__init__(error.problem)
+        self.keys = error.keys
+
+
+def _with_values(s: Scenario, values: Mapping[str, Any]) -> Scenario:
+    """As `with_values`, with the errors of settings."""
+    if WEATHER in values:
+        s = _with_other_weather(s, values[WEATHER])
+    for name, value in values.items():
+        key = find_key(s, name)
+        given = key.checked(value)
+        if name in _CAPTURES:
+            try:
+                given = _CAPTURES[name](given)
+            except ValueError as error:
+                raise SettingError(f"{name}: {error}", name) from None
+        s = key.put(s, given)
+    if any(name.endswith(".kind") or name.startswith(OPTIONS) for name in values):
+        s = _with_plugins(s)
+    _check_together(s)
+    return s
+
+
+def _with_other_weather(s: Scenario, name: Any) -> Scenario:
+    """The same with another weather by its name in place of the one that it has."""
+    plain = EnvironmentSettings()
+    was = PRESETS[s.environment.preset].keys if s.environment.preset in PRESETS else {}
+    keys_ = {key: getattr(plain, key) for key, value in was.items() if _same(getattr(s.environment, key), value)}
+    if name in list(PRESETS):
+        keys_ |= {key: getattr(_weather(name), key) for key in PRESETS[name].keys}
+    elif name != "":
+        _with_weather({"environment": {"preset": name}})  # says what there is
+    return replace(s, environment=replace(s.environment, **keys_))
+
+
+def _weather(name: str) -> EnvironmentSettings:
+    return settings.read(EnvironmentSettings, PRESETS[name].keys)
+
+
+def _same(value: Any, plain: Any) -> bool:
+    return bool(value == (tuple(plain) if isinstance(plain, list) else plain))
 
 
 def _with_weather(values: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -391,7 +498,7 @@ def _check_name(s: Scenario) -> None:
 
 def _with_inputs(s: Scenario, values: Mapping[str, Any]) -> Scenario:
     """The same with what comes from outside as it was read: by `values`, or now."""
-    for key, capture in ((inputs.AIRCRAFT, _airframe), *((key, captured) for key in inputs.PRESETS)):
+    for key, capture in _CAPTURES.items():
         given = inputs.value_of(values, key)
         found = inputs.value_of(asdict(s), key) if given is None else given
         try:
@@ -436,10 +543,11 @@ def with_kinds(s: Scenario, **chosen: Any) -> Scenario:
     ValueError
         One line: it is not registered, no such class, or does not suit the scenario.
     """
+    chosen = {what: named for what, named in chosen.items() if named is not None}
+    if not chosen:
+        return s
     values = s.to_dict()
     for what, named in chosen.items():
-        if named is None:
-            continue
         name = named if isinstance(named, str) else of_class(what, named)
         own = values[what] if name == values[what]["kind"] else {}
         kept = {"axes": values[what]["axes"]} if what == "detector" else {}
@@ -472,6 +580,10 @@ def _airframe(model: str) -> str:
         return model
     folder = find_aircraft(model)
     return model if folder.parent == hangar().resolve() else read_airframe(folder)
+
+
+_CAPTURES: dict[str, Callable[[str], str]] = {inputs.AIRCRAFT: _airframe, **dict.fromkeys(inputs.PRESETS, captured)}
+"""What reads what comes from outside, by its key."""
 
 
 def _replaced(group: Any, path: list[str], value: Any) -> Any:
@@ -641,7 +753,7 @@ def _check_detector(s: Scenario) -> None:
         raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind.name}'", "detector.axes")
     if kind.need is None:
         return
-    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread)
+    push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread) * s.push_factor
     need = kind.need(s.detector, push)
     if need.level_key == "trigger" and need.level < s.detector.threshold:
         raise SettingError(
@@ -677,15 +789,3 @@ def _check_reach(s: Scenario, need: Need) -> None:
             f"detector.{need.level_key}",
             "accelerometer",
         )
-
-
-def _check_requirements(s: Scenario) -> None:
-    """Refuse a slip in a file; a record keeps what it was judged by, even if the score no longer has it."""
-    for i, r in enumerate(s.requirements):
-        where = f"requirements[{i}]"
-        if r.key not in NUMBERS:
-            near = nearest(r.key, NUMBERS)
-            hint = f"; did you mean {near!r}?" if near else "; see score.json for those there are"
-            raise SettingError(f"{where}.key = {shown(r.key)}: is no number of the score{hint}", "requirements")
-        if r.minimum is not None and r.maximum is not None and r.minimum > r.maximum:
-            raise SettingError(f"{where} ({r.key}): minimum is above maximum", "requirements")

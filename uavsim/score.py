@@ -33,7 +33,8 @@ from uavsim.score_keys import PHASES, PRESSURE, PRESSURES
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
-    from uavsim.scenario import Requirement, Scenario
+    from uavsim.requirements import Requirement
+    from uavsim.scenario import Scenario
 
 Array = NDArray[np.float64]
 
@@ -210,7 +211,7 @@ def _score(flight: Judged) -> dict[str, Any]:
         "requirements": [],
         "remarks": [],
     }
-    result["requirements"] = [_requirement(result, r) for r in flight.scenario.requirements]
+    result["requirements"] = [_requirement(result, r) for r in flight.scenario.requirements if r.of_each_flight]
     return result
 
 

@@ -1,4 +1,11 @@
-"""Names of the numbers that a score holds, group by group, in its order: what a requirement may bound."""
+"""Names of the outcomes and of the numbers that a score holds, group by group, in its order."""
+
+from typing import Literal
+
+Outcome = Literal[
+    "cruise", "missed_launch", "false_launch", "crashed", "landed", "diverged", "onboard_failed", "timeout",
+    "completed",
+]  # fmt: skip
 
 PHASES = ("stroke", "transition", "cruise")
 LAUNCH = (

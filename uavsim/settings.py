@@ -86,6 +86,22 @@ def read(kind: type[T], values: Mapping[str, Any]) -> T:
     return found
 
 
+def read_value(hint: Any, key: str, value: Any) -> Any:
+    """Return a value of one key as it is declared.
+
+    Raises
+    ------
+    SettingError
+        It is of another type or out of its bounds.
+    """
+    from pydantic import ValidationError
+
+    try:
+        return _adapter(hint).validate_json(json.dumps(_plain(value, ())), strict=True)
+    except (_OddError, ValidationError):
+        raise SettingError(f"{key} = {shown(value)}: must be {_allowed(hint)}{_remark(hint, value)}", key) from None
+
+
 def keys(kind: Any, prefix: str = "") -> list[str]:
     """Every key of nested settings, joined by dots."""
     found: list[str] = []

@@ -12,12 +12,16 @@ the fuselage's side with that in the plane of the wing. Every rate is the body's
              C_L · K,  K = (1 + s)/(1 + s φ)     lifting line whose induced angle is φ of the free one; s = a₀/(π A)
              ε · g_ε,  g_ε = 1/(1 + (b/4h)²)     images of the trailing vortices, wing and tail level (DATCOM §4.7)
 
+Lift and drag, the whole force along their axes, and the pitching moment are multiplied with factor/lift, factor/drag
+and factor/pitch, 1 unless a scenario says otherwise: what is not known of an aircraft's aerodynamics.
+
 A function before the axes is worked out once a step, in this order; the pressures of the planes are of this step there.
 """
 
 import numpy as np
 
 from .aerodynamics import ALPHAS, HEIGHTS, LOCAL, SIDESLIPS, Tables
+from .factors import factor
 from .geometry import WING_POSITIONS, Geometry
 
 FOOT = 0.3048  # m
@@ -118,9 +122,9 @@ def _forces(t: Tables) -> dict[str, dict[str, str]]:
     wing = _product(WING_LIFT, _table("ground-lift", t, GROUND))
     lift = _sum(wing, _difference(_product(COS, NORMAL), _product(SIN, AXIAL)))
     return {
-        "X": {"drag": _product(UPRIGHT, drag)},
+        "X": {"drag": _product(factor("drag"), UPRIGHT, drag)},
         "Y": {"side": _product(SIDEWAYS, _sum(FIN_SIDE, _table("fuselage-side", t, BODY_SLIP)))},
-        "Z": {"lift": _product(UPRIGHT, lift)},
+        "Z": {"lift": _product(factor("lift"), UPRIGHT, lift)},
     }
 
 
@@ -140,7 +144,7 @@ def _moments(geometry: Geometry, t: Tables) -> dict[str, dict[str, str]]:
     side = _sum(_product(-fin, FIN_SIDE), _table("fuselage-yaw", t, BODY_SLIP))
     return {
         "ROLL": {"roll": _product(UPRIGHT, SPAN, roll), "fin-roll": _product(SIDEWAYS, SPAN, z, FIN_SIDE)},
-        "PITCH": {"pitch": _product(UPRIGHT, CHORD, pitch)},
+        "PITCH": {"pitch": _product(factor("pitch"), UPRIGHT, CHORD, pitch)},
         "YAW": {"yaw": _product(UPRIGHT, SPAN, yaw), "fin-yaw": _product(SIDEWAYS, SPAN, side)},
     }
 

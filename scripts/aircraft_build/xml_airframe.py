@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from .factors import excess_thrust_xml
 from .geometry import Geometry, place
 from .mass import fixed_body, panel_masses
 
@@ -21,7 +22,7 @@ def metrics_xml(geometry: Geometry) -> str:
 
 
 def mass_xml(geometry: Geometry) -> str:
-    """Write what stays as the empty aircraft and the panels as point masses 0, 1 right and 2, 3 left, folded."""
+    """Write what stays as the empty aircraft, and point masses: 0, 1 right and 2, 3 left panels, folded; ballast."""
     body = fixed_body(geometry)
     # x and z both change sign from structural to body axes, so Σ m x z stays; "negated" wants it as in the tensor
     inertia = {"ixx": body.ixx, "iyy": body.iyy, "izz": body.izz, "ixz": -body.ixz}
@@ -34,6 +35,10 @@ def mass_xml(geometry: Geometry) -> str:
                 f'    <pointmass name="{side}-{end}"><weight unit="KG">{m:.6f}</weight>'
                 f"{_location((x, sign * y, 0.0))}</pointmass>"
             )
+    lines += [
+        f'    <pointmass name="ballast-{end}"><weight unit="KG">0</weight>{_location(body.centre)}</pointmass>'
+        for end in ("fore", "aft")
+    ]
     return '  <mass_balance negated_crossproduct_inertia="true">\n' + "\n".join(lines) + "\n  </mass_balance>\n"
 
 
@@ -52,7 +57,8 @@ def reactions_xml(geometry: Geometry) -> str:
     """Write what the launcher and the opening wing do to the aircraft.
 
     Positive: push forwards, shoes lift the aircraft or push it right, the rail's moment rolls it right. The wing's
-    moment has magnitude 1 and the components l, m, n, which systems/wing.xml sets.
+    moment has magnitude 1 and the components l, m, n, which systems/wing.xml sets. The excess thrust is what
+    factor/thrust adds to the propeller's, at its place and along the body's axis as that is.
     """
     forces = [("push", "push", (1, 0, 0))]
     for shoe in ("front", "rear"):
@@ -63,6 +69,8 @@ def reactions_xml(geometry: Geometry) -> str:
         for name, at, way in forces
     ]
     lines += [
+        f'    <force name="excess-thrust" frame="BODY">{excess_thrust_xml()}'
+        f"{_location(geometry['motor']['position'])}{_direction((1, 0, 0))}</force>",
         f'    <moment name="rail-roll" frame="BODY">{_direction((1, 0, 0))}</moment>',
         '    <moment name="wing-inertia" frame="BODY"><function><value>1</value></function>'
         f"{_direction((0, 0, 0))}</moment>",

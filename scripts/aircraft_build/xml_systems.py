@@ -3,6 +3,7 @@
 import math
 
 from .aerodynamics import Tables
+from .factors import factors_xml
 from .geometry import WING_POSITIONS, Geometry
 from .mass import panel_masses
 from .trim import trim_deflections
@@ -20,7 +21,7 @@ AIR = "".join(f'    <property value="0">air/{axis}-rad_sec</property>\n' for axi
 def systems_xml(geometry: Geometry, t: Tables) -> str:
     """Write the system of constants and trim, and name the hand-written ones."""
     return (
-        f'  <system name="constants">\n{_constants(geometry)}{AIR}{_trim(geometry, t)}  </system>\n'
+        f'  <system name="constants">\n{_constants(geometry)}{AIR}{factors_xml()}{_trim(geometry, t)}  </system>\n'
         '  <system file="wing"/>\n  <system file="stabiliser"/>\n'
     )
 

@@ -4,8 +4,10 @@ import os
 import subprocess
 import sys
 import textwrap
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,10 +15,14 @@ import pytest
 
 import uavsim
 from uavsim.cosim import draw
-from uavsim.scenario import Scenario, load_scenario
-from uavsim.studies import batch
-from uavsim.studies.batch import ERROR_START, ERROR_STEP, Batch, fly_seeds
+from uavsim.scenario import load_scenario
+from uavsim.studies import batch, engine
+from uavsim.studies.batch import Batch, fly_seeds
 from uavsim.studies.batch_cramer_rao import STRETCHES, against_bound, least_error
+from uavsim.studies.campaign.flown import ERROR_START, ERROR_STEP, Flown, fly_position
+from uavsim.studies.campaign.keep import Keep
+from uavsim.studies.campaign.plan import Plan
+from uavsim.studies.engine import InTurn, Left
 
 SHORT = load_scenario("catapult", overrides=["duration=6"])
 SEEDS = [4, 2, 9]
@@ -48,12 +54,17 @@ def test_two_workers_give_what_one_gives(alone: Batch) -> None:
         pd.testing.assert_frame_equal(together.kept[seed].estimate, flight.estimate, check_exact=True)
 
 
-def test_rows_are_in_the_order_of_the_seeds_however_they_finish(alone: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    def mixed(scenario: Scenario, seeds: list[int], finished: batch.Finished) -> None:
-        for position in (2, 0, 1):
-            finished([(position, batch._one(scenario, seeds[position], position=position))])
+class Mixed(InTurn):
+    """Does its parts in another order."""
 
-    monkeypatch.setattr(batch, "_in_turn", mixed)
+    def each(self, work: Any, given: Any, *, done: Any, limit: float | None = None) -> list[Left]:
+        for position in (2, 0, 1):
+            done([(position, work(given[position]))])
+        return []
+
+
+def test_rows_are_in_the_order_of_the_seeds_however_they_finish(alone: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "engine", lambda **_: nullcontext(Mixed()))
     same(fly_seeds(SHORT, SEEDS, workers=1), alone)
 
 
@@ -113,21 +124,20 @@ def test_a_flight_that_is_not_launched_has_no_trace() -> None:
 
 @pytest.mark.parametrize("seeds", [[], [1]])
 def test_few_seeds_need_no_pool(seeds: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch, "each", None)
+    monkeypatch.setattr(engine, "Engine", None)
     flown = fly_seeds(SHORT, seeds, workers=2)
     assert len(flown.runs) == len(seeds)
     assert flown.complete
 
 
+def interrupted(plan: Plan, keep: Keep, limit: float, position: int) -> Flown:
+    if position == 2:
+        raise KeyboardInterrupt
+    return fly_position(plan, keep, limit, position)
+
+
 def test_an_interrupt_keeps_what_was_finished(alone: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    one = batch._one
-
-    def interrupted(scenario: object, seed: int, *, position: int) -> object:
-        if seed == 9:
-            raise KeyboardInterrupt
-        return one(scenario, seed, position=position)
-
-    monkeypatch.setattr(batch, "_one", interrupted)
+    monkeypatch.setattr(batch, "fly_position", interrupted)
     flown = fly_seeds(SHORT, SEEDS, workers=1)
     assert not flown.complete
     assert flown.runs["seed"].tolist() == [4, 2]

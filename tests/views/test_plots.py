@@ -1,8 +1,6 @@
 """Plots of flights: drawn for whatever a record holds, readable, equal for equal flights."""
 
-import copy
 import dataclasses
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,13 +13,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 import uavsim
-from uavsim.flight import UNITS, Flight, load
+from uavsim.flight import UNITS, Flight
 from uavsim.onboard.launch import DetectorSettings, build
 from uavsim.scenario import Scenario
 from uavsim.score import Judged, score
-from uavsim.studies.batch import Batch, ErrorTrace, _flat
+from uavsim.studies.batch import Batch
+from uavsim.studies.campaign.flown import ErrorTrace, row_of
 from uavsim.truth import STANDARD_GRAVITY
-from uavsim.views import batch, launch, plots, pressure, trajectory
+from uavsim.views import launch, plots, pressure, trajectory
 from uavsim.views.curves import thin
 from uavsim.views.figure import BLUE, PHASES, RED, make_room, sheet
 from uavsim.views.marks import Mark, flags, stack
@@ -113,7 +112,7 @@ def check_png(path: Path) -> None:
         width, height = image.size
         pixels = np.asarray(image.convert("L"))
     assert 900 <= width <= 2000
-    assert 500 <= height <= 1500
+    assert 250 <= height <= 1500
     inked = float((pixels < 250).mean())
     assert 0.02 < inked < 0.9
 
@@ -252,16 +251,7 @@ def test_readings_and_truth_are_drawn_where_they_are(flight: Flight) -> None:
 
 def batch_of(flights: list[Flight], *, complete: bool = True) -> Batch:
     """Gather flights as `fly_seeds` does."""
-    rows = [
-        {
-            "index": 0,
-            "seed": f.score["seed"],
-            "outcome": f.score["outcome"],
-            **_flat({k: v for k, v in f.score.items() if k not in ("seed", "outcome", "versions", "requirements")}),
-            "requirements.met": True,
-        }
-        for f in flights
-    ]
+    rows = [row_of(f, index=f.score["seed"], columns={}) for f in flights]
     rng = np.random.default_rng(7)
     traces = [
         ErrorTrace(f.score["seed"], 0.1 * rng.random(40), 0.2 * rng.random(40), rng.chisquare(1, 40)) for f in flights
@@ -273,75 +263,6 @@ def batch_of(flights: list[Flight], *, complete: bool = True) -> Batch:
 @pytest.fixture(scope="module")
 def several(flight: Flight) -> Batch:
     return batch_of([flight, made_up(seed=2), made_up(push=36.0, seed=3)])
-
-
-def recorded(several: Batch, folder: Path) -> batch.Record:
-    """Keep all flights but the last, the second before the first, and then the last."""
-    record = batch.Record(folder, several.scenario, [1, 2, 3])
-    rows = several.runs.to_dict("records")
-    results = [(i, (row, several.traces[i], several.kept.get(row["seed"]))) for i, row in enumerate(rows)]
-    record.keep([results[1], results[0]])
-    record.keep(results[2:])
-    return record
-
-
-def test_a_batch_is_written_with_all_its_parts(several: Batch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn: list[Path] = []
-    monkeypatch.setattr(batch, "save_plots", lambda _, folder: drawn.append(folder))  # drawn above already
-    recorded(several, tmp_path).close(several, plots=True)
-    pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "runs.parquet"), several.runs)
-    described = json.loads((tmp_path / "campaign.json").read_text())
-    assert (described["asked"], described["seeds"]) == ("1-3", [1, 2, 3])
-    assert (described["root_seed"], described["complete"], described["wall_time"]) == (1, True, 1.5)
-    assert Scenario.from_dict(described["scenario"]) == several.scenario
-    assert described["versions"]["numpy"] == np.__version__
-    assert set(described["processor"]) == {"machine", "name", "features"}
-    assert [path.name for path in (tmp_path / "flights").iterdir()] == ["1"]
-    assert load(tmp_path / "flights" / "1").score == several.kept[1].score
-    assert drawn == [tmp_path / "flights" / "1" / "plots"]
-    names = {path.name for path in (tmp_path / "plots").iterdir()}
-    assert names == {"latency.png", "airspeed_error.png", "consistency.png", "outcomes.png"}
-    for name in names:
-        check_png(tmp_path / "plots" / name)
-    assert {path.name for path in tmp_path.iterdir()} == {"campaign.json", "runs.parquet", "flights", "plots"}
-
-
-def test_a_batch_says_from_the_beginning_what_it_is(several: Batch, tmp_path: Path) -> None:
-    batch.Record(tmp_path, several.scenario, [1, 2, 3, 9])
-    described = json.loads((tmp_path / "campaign.json").read_text())
-    assert (described["asked"], described["seeds"], described["complete"]) == ("1-3,9", [], False)
-    assert [path.name for path in tmp_path.iterdir()] == ["campaign.json"]
-
-
-def test_many_rows_are_kept_in_several_files(several: Batch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file a thousand flights, here two; read together they are the rows in the order of the seeds."""
-    monkeypatch.setattr(batch, "PART", 2)
-    recorded(several, tmp_path)
-    assert sorted(p.name for p in (tmp_path / "runs.parquet").iterdir()) == ["part-00000.parquet", "part-00001.parquet"]
-    pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "runs.parquet"), several.runs)
-
-
-@pytest.mark.parametrize(
-    ("seeds", "text"),
-    [([], ""), ([7], "7"), ([1, 2, 3, 4, 9], "1-4,9"), ([3, 2, 1], "3,2,1"), ([5, 6, 8, 9], "5-6,8-9")],
-)
-def test_seeds_are_told_as_they_are_given(seeds: list[int], text: str) -> None:
-    assert batch.ranges(seeds) == text
-
-
-def test_the_error_axis_is_that_of_the_flight_not_of_still_air_before_it(several: Batch) -> None:
-    """Before the launch an estimate of still air may be right to 1e-9 m/s, which is no scale for what follows."""
-    figure = batch._airspeed_error(several)
-    assert figure is not None
-    expected = figure.axes[0].get_ylim()
-    still = copy.deepcopy(several)
-    before = still.error_time <= 0.0
-    for trace in still.traces:
-        n = min(trace.filtered.size, before.size)
-        trace.filtered[:n][before[:n]] = 1e-9
-    figure = batch._airspeed_error(still)
-    assert figure is not None
-    assert figure.axes[0].get_ylim()[0] == expected[0] > 1e-4
 
 
 def test_faults_and_what_was_noticed_of_them_are_marked() -> None:
@@ -385,28 +306,6 @@ def test_the_labels_of_many_faults_stay_out_of_the_path_above(flight: Flight) ->
     drawn = {text.get_text(): text.get_window_extent(renderer) for text in angle.texts}
     assert "total flagged" in drawn
     assert max(box.y1 for box in drawn.values()) < path.xaxis.label.get_window_extent(renderer).y0 + 1.0
-
-
-def test_missed_launches_have_no_latency_to_draw(tmp_path: Path) -> None:
-    missed = batch_of([made_up(push=36.0)], complete=False)
-    missed.traces[0] = ErrorTrace(1, *(np.empty(0) for _ in range(3)))
-    assert [path.name for path in batch.save_batch_plots(missed, tmp_path)] == ["outcomes.png"]
-
-
-def test_a_launch_that_was_missed_counts_as_one_detected_never(several: Batch) -> None:
-    latencies = batch.latencies_since(several, "true_time")
-    expected = [1e3 * several.runs["launch.latency"][i] for i in (0, 1)]
-    assert latencies[:2] == pytest.approx(expected)
-    assert latencies[2] == np.inf
-    # the third never reaches 4.5 g, so nothing is said of it since then
-    assert batch.latencies_since(several, "crossing_time").size == 2
-
-
-def test_processor_features_are_those_of_floating_point(tmp_path: Path) -> None:
-    cpuinfo = tmp_path / "cpuinfo"
-    cpuinfo.write_text("processor : 0\nflags\t\t: fpu sse4_2 avx2 fma ht avx\n\nflags : avx512f\n")
-    assert batch.processor_features(cpuinfo) == ["avx", "avx2", "fma", "sse4_2"]
-    assert batch.processor_features(tmp_path / "none") == []
 
 
 def test_a_flight_that_diverged_before_its_first_row_draws_no_empty_panels(tmp_path: Path) -> None:

@@ -19,14 +19,20 @@ from uavsim.cli.rare import rare
 from uavsim.cli.replay import replay
 from uavsim.cli.roc import roc
 from uavsim.cli.scenarios import scenarios
+from uavsim.cli.sensitivity import sensitivity
 from uavsim.cli.sensors import sensors
 from uavsim.cli.survey import survey
+from uavsim.cli.sweep import sweep
 from uavsim.cli.tune import tune
+from uavsim.cli.verify import verify
 from uavsim.failure import PartError
 from uavsim.interrupts import like_ctrl_c
 from uavsim.views.text import message
 
-COMMANDS = (scenarios, fly, campaign, replay, sensors, roc, tune, rare, survey, paper, plugins, bench)
+COMMANDS = (
+    *(scenarios, fly, campaign, sweep, sensitivity, verify, rare, replay, sensors),
+    *(roc, tune, survey, paper, plugins, bench),
+)
 """In the order of the help."""
 
 
@@ -63,12 +69,16 @@ def uavsim(
       uavsim fly catapult --seed 7
       uavsim fly gusty --seeds 1-50 --out output/gusty-50
       uavsim campaign dispersed --runs 1000 --out output/dispersed
+      uavsim verify dispersed --requirements small-uav --out output/verify
+      uavsim sweep catapult --vary air_data.total.noise_scale=0.5,1,2,4 --runs 50
+      uavsim sensitivity dispersed --runs 1000
+      uavsim verify dispersed --requirements small-uav
+      uavsim rare catapult --event false_launch
       uavsim replay output/catapult-7
       uavsim replay imu.csv --map t=time,fx=ax,fy=ay,fz=az
       uavsim sensors bmp390
       uavsim roc --detectors adaptive-cusum,multi-level-window,px4
       uavsim tune catapult --false-alarms 0.1
-      uavsim rare catapult --event false_launch
       uavsim survey fw8
       uavsim paper
       uavsim plugins

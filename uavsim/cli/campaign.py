@@ -35,11 +35,10 @@ from uavsim.cli.printed import Json, document
 from uavsim.studies.campaign.keep import DEFAULT
 
 if TYPE_CHECKING:
-    from uavsim.scenario import Scenario
     from uavsim.studies.campaign.keep import Keep
     from uavsim.studies.campaign.plan import Plan
 
-SAMPLINGS = ("random", "latin-hypercube", "sobol")
+MOST_ROWS = 1000  # in a document; those of more flights are in the folder
 
 
 def campaign(
@@ -68,13 +67,14 @@ def campaign(
     insecure: Insecure = False,
     as_json: Json = False,
 ) -> None:
-    """Fly a scenario many times, each flight with its own draws, and say how all of them ended.
+    """Fly a scenario many times, each flight with draws of its own.
 
     Example: uavsim campaign dispersed --runs 1000 --out output/dispersed-1000
 
     Example: uavsim campaign dispersed --runs 1000 --out output/dispersed-1000 --resume
     """
     from uavsim.scenario import load_scenario
+    from uavsim.studies.campaign.campaign import sampled
 
     plug_in(plugin)
     means = Means(workers, scheduler, tls_ca, tls_cert, tls_key, insecure, dashboard, flight_limit)
@@ -82,7 +82,7 @@ def campaign(
     rule = keep_rule(keep)
     with user_input():
         loaded = load_scenario(scenario, overrides=settings or (), seed=seed, seed_name="--seed")
-        plan = plan_for(loaded, runs, sampling)
+        plan = sampled(loaded, runs, sampling)
         first = plan.flight(0)
     if dry_run:
         _tell_cost(plan, rule, ready(first, settings), means)
@@ -91,26 +91,11 @@ def campaign(
          as_json=as_json)  # fmt: skip
 
 
-def plan_for(scenario: "Scenario", runs: int, sampling: str) -> "Plan":
-    """Return what flies.
-
-    Raises
-    ------
-    ValueError
-        No such sampling, or a number of flights that it does not have.
-    """
-    from uavsim.studies.campaign.plan import Design, Random
-
-    if sampling not in SAMPLINGS:
-        raise typer.BadParameter(f"{sampling[:40]!r}: must be one of {', '.join(SAMPLINGS)}", param_hint="--sampling")
-    return Random(scenario, runs) if sampling == "random" else Design(scenario, runs, sampling)
-
-
 def _fly(
     plan: "Plan", rule: "Keep", means: Means, *, out: Any, given: list[str] | None, resume: bool, overwrite: bool,
     plots: bool, as_json: bool,
 ) -> None:  # fmt: skip
-    from uavsim.studies.batch import batch_of
+    from uavsim.studies.campaign.many import many_of
     from uavsim.studies.campaign.record import Record
     from uavsim.views import batch as view
     from uavsim.views import documents, terminal
@@ -121,12 +106,12 @@ def _fly(
         remark([*ready(plan.flight(0), given).remarks, *_need(plan, rule, place.folder)])
         record = Record(place.folder, plan, keep=str(rule), before=before)
         flights = flown(record, means, rule)
-        all_ = batch_of(flights)
+        all_ = many_of(flights)
         view.close(record, flights, all_, plots=plots)
     if as_json:
-        document(documents.batch(all_, place.target))
+        document(documents.batch(all_, place.target, with_rows=len(all_.runs) <= MOST_ROWS))
     else:
-        terminal.print_batch(all_)
+        terminal.print_batch(all_, place.target)
         terminal.say(f"written to {place.target}")
     say_unfinished(flights)
     leave(bool((all_.runs["outcome"] == all_.runs["expected"]).all() and all_.runs["requirements.met"].all()))

@@ -1,6 +1,6 @@
 """What commands that fly many flights share: their options, who flies, where it is written, and what is said of it."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -11,7 +11,7 @@ import typer
 
 from uavsim.cli.common import (
     LARGEST_SEED,
-    Bar,
+    UNEXPECTED,
     Interrupted,
     WrongInputError,
     finite,
@@ -19,6 +19,7 @@ from uavsim.cli.common import (
     leave,
     user_input,
 )
+from uavsim.cli.progress import FlightsBar
 from uavsim.folders import Place, StandingPlace
 from uavsim.views.text import visible
 
@@ -146,39 +147,32 @@ def before_of(place: Place, plan: "Plan", *, resume: bool) -> "Before | None":
         return taken_up(place.folder, plan)
 
 
-class Watch:
-    """Progress of flights, on a terminal."""
-
-    def __init__(self, name: str) -> None:
-        self._bar = Bar(f"flying {name}")
-
-    def __enter__(self) -> Callable[[int, int, Mapping[str, int]], None]:
-        self._bar.__enter__()
-        return lambda done, total, _: self._bar.show(done / total)
-
-    def __exit__(self, *error: object) -> None:
-        self._bar.__exit__(*error)
-
-
 def flown(
     record: "Record", means: Means, keep: "Keep", *, positions: "range | None" = None, crew: "Crew | None" = None
 ) -> "Flights":
     """Fly what is missing; an interrupt is told with how to go on."""
     from uavsim.studies.campaign.campaign import fly_plan
 
-    name, size = record.plan.scenario.name, record.plan.size
+    name, before = record.plan.scenario.name, record.finished
     try:
-        with Watch(name) as progress:
+        with FlightsBar(f"flying {name}") as bar:
             if crew is not None:
-                return fly_plan(record, crew, keep, positions=positions, limit=means.limit, progress=progress)
+                return fly_plan(record, crew, keep, positions=positions, limit=means.limit, progress=bar.flew)
             with means.crew() as own:
-                return fly_plan(record, own, keep, positions=positions, limit=means.limit, progress=progress)
+                return fly_plan(record, own, keep, positions=positions, limit=means.limit, progress=bar.flew)
     except KeyboardInterrupt:
         if not record.finished:
             raise
-        raise Interrupted(
-            f"{record.finished} of {size} flights are kept; go on with the same command and --resume"
-        ) from None
+        raise Interrupted(_kept(record)) from None
+    except WrongInputError as error:
+        if record.finished == before:
+            raise
+        typer.echo(f"Error: {visible(str(error))}; {_kept(record)}", err=True)
+        raise typer.Exit(UNEXPECTED) from None
+
+
+def _kept(record: "Record") -> str:
+    return f"{record.finished} of {record.plan.size} flights are kept; go on with the same command and --resume"
 
 
 def say_unfinished(flights: "Flights", *, end: bool = True) -> None:

@@ -26,16 +26,17 @@ from uavsim.cli.common import (
     plug_in,
     user_input,
 )
-from uavsim.cli.flights import Means, Watch, ready, remark
+from uavsim.cli.flights import Means, ready, remark
 from uavsim.cli.printed import Json, document
+from uavsim.cli.progress import FlightsBar
 from uavsim.folders import Place
 
 if TYPE_CHECKING:
     from uavsim.cosim import Cosimulation
     from uavsim.flight import Flight
     from uavsim.scenario import Scenario
-    from uavsim.studies.batch import Batch
     from uavsim.studies.campaign.campaign import Flights
+    from uavsim.studies.campaign.many import Many
     from uavsim.studies.campaign.record import Record
 
 Held = AbstractContextManager[Place]
@@ -154,8 +155,8 @@ def _flown(simulation: "Cosimulation") -> "Flight":
 def _fly_many(
     scenario: "Scenario", numbers: list[int], place: Held, given: list[str], *, plots: bool, as_json: bool, again: str
 ) -> None:
-    from uavsim.studies.batch import batch_of
     from uavsim.studies.campaign.keep import FIRST_AND_FAILURES
+    from uavsim.studies.campaign.many import many_of
     from uavsim.studies.campaign.plan import Seeds
     from uavsim.studies.campaign.record import Record
     from uavsim.studies.engine import processes
@@ -166,15 +167,15 @@ def _fly_many(
         remark(ready(plan.flight(0), given).remarks)  # and to see whether it can be flown
         record = Record(held.folder, plan, keep=str(FIRST_AND_FAILURES))
         flights = _flown_many(record, Means(workers=processes(None, len(numbers))))
-        all_ = batch_of(flights)
+        all_ = many_of(flights)
         left = _left(flights, again)
         if not len(all_.runs):
             raise KeyboardInterrupt if not left else WrongInputError(f"no flight is finished: {left}")
         drawn = _closed(record, flights, all_, plots=plots)
     if as_json:
-        document(documents.batch(all_, held.target))
+        document(documents.batch(all_, held.target, seeds=True))
     else:
-        terminal.print_batch(all_)
+        terminal.print_batch(all_, held.target)
         terminal.say(f"written to {held.target}")
     if left:
         typer.echo(f"unfinished: {left}", err=True)
@@ -191,8 +192,8 @@ def _flown_many(record: "Record", means: Means) -> "Flights":
     from uavsim.studies.campaign.keep import FIRST_AND_FAILURES
 
     try:
-        with Watch(record.plan.scenario.name) as progress, means.crew() as crew:
-            return fly_plan(record, crew, FIRST_AND_FAILURES, progress=progress)
+        with FlightsBar(f"flying {record.plan.scenario.name}") as bar, means.crew() as crew:
+            return fly_plan(record, crew, FIRST_AND_FAILURES, progress=bar.flew)
     except KeyboardInterrupt:
         return Flights(record.folder, record.plan, complete=False)
 
@@ -208,7 +209,7 @@ def _left(flights: "Flights", again: str) -> str:
     return f"seed {seeds}: {why}; what is left is flown by: {again} --seeds {seeds}"
 
 
-def _closed(record: "Record", flights: "Flights", flown: "Batch", *, plots: bool) -> bool:
+def _closed(record: "Record", flights: "Flights", flown: "Many", *, plots: bool) -> bool:
     """Complete the folder; False if somebody did not want to wait for it."""
     from uavsim.views import batch as view
 
@@ -219,7 +220,7 @@ def _closed(record: "Record", flights: "Flights", flown: "Batch", *, plots: bool
     return True
 
 
-def _all_as_expected(flown: "Batch") -> bool:
+def _all_as_expected(flown: "Many") -> bool:
     return bool((flown.runs["outcome"] == flown.runs["expected"]).all() and flown.runs["requirements.met"].all())
 
 

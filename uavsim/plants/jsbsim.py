@@ -23,6 +23,7 @@ from math import atan2, cos, exp, inf, isfinite, pi, sin, sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+from weakref import proxy
 
 import numpy as np
 from jsbsim import BaseError, FGFDMExec, FGLogger, FGPropertyNode, set_logger
@@ -30,7 +31,7 @@ from numpy.typing import NDArray
 
 from uavsim import airdata
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, MOLAR_MASS_DRY_AIR, MOLAR_MASS_WATER
-from uavsim.plants import held
+from uavsim.plants import held, varied
 from uavsim.plants.air.moving import MovingAir
 from uavsim.plants.air.moving import State as AirState
 from uavsim.plants.air.weather import at_ground, doubts
@@ -96,6 +97,9 @@ class _Silence(FGLogger):
     def message(self, message: str) -> None: ...
     def format(self, fmt: Any) -> None: ...
     def flush(self) -> None: ...
+
+
+SILENCE = _Silence()  # one for all: JSBSim has a logger for each thread, see `_opened`
 
 
 class JsbsimPlant:
@@ -233,6 +237,17 @@ class JsbsimPlant:
         self._set("ic/theta-deg", launcher.elevation_deg)
         self._set("atmosphere/delta-T", air.temperature_offset / RANKINE)
         self._apply(s.aircraft.properties)
+        for name, factor in varied.factors(s.aircraft).items():
+            self._set(self._varies(varied.FACTORS[name], name), factor)
+        self._start()
+        if varied.is_ballasted(s.aircraft):
+            self._ballast()
+            self._start()
+        self._check_body()
+        self._weather()
+
+    def _start(self) -> None:
+        """Let JSBSim take in its initial conditions."""
         try:
             started = self._fdm.run_ic()
         except (BaseError, RuntimeError) as error:
@@ -240,8 +255,31 @@ class JsbsimPlant:
             raise ValueError(f"aircraft.model: {_said(error, self.settings.aircraft.model)}") from error
         if not started:
             raise ValueError("aircraft.model: JSBSim cannot start it from rest on the rail")
+
+    def _varies(self, needed: str, *names: str) -> str:
+        """Return a property that settings of the aircraft need; say which of them, where it lacks."""
+        aircraft = self.settings.aircraft
+        if "W" not in self._catalogue.get(needed, ""):
+            plain = AircraftSettings()
+            name = next(n for n in names if getattr(aircraft, n) != getattr(plain, n))
+            raise ValueError(varied.missing(aircraft, name, getattr(aircraft, name), needed))
+        return needed
+
+    def _ballast(self) -> None:
+        """Place ballast on the body's x axis, for another mass and another centre of gravity."""
         self._check_body()
-        self._weather()
+        asked = ("mass_factor", "cg_shift")
+        mass = self._value("inertia/mass-slugs") * SLUG
+        given = varied.ballast(self.settings.aircraft, mass, self._inertia()[1])
+        weight = self._value("inertia/weight-lbs")
+        x, y, z = (self._value(f"inertia/cg-{axis}-in") for axis in "xyz")
+        for number, share, ahead in zip(varied.BALLAST, (given.fore, given.aft), (given.arm, -given.arm), strict=True):
+            which = self._value(self._varies(number, *asked))
+            index = f"[{which:.0f}]" if which else ""
+            places = {"X": x - ahead / INCH, "Y": y, "Z": z}
+            for axis, place in places.items():
+                self._set(self._varies(f"inertia/pointmass-location-{axis}-inches{index}", *asked), place)
+            self._set(self._varies(f"inertia/pointmass-weight-lbs{index}", *asked), share * weight)
 
     def _weather(self) -> None:
         """Give the air the pressure of the day, and its vapour; JSBSim's own standard is 0.5 Pa above ISO 2533."""
@@ -314,7 +352,7 @@ class JsbsimPlant:
 
     def _settle(self) -> None:
         if self._moving.active:
-            self._blown = self._moving.motion(-self._settling * self.dt, self._state)
+            self._blown = self._motion_from(-self._settling * self.dt)
         loads, counted = 0.0, round(SETTLED * self.settings.step_rate)
         for k in range(-self._settling, 0):
             forces = self._hold(k * self.dt)
@@ -404,7 +442,7 @@ class JsbsimPlant:
         if moving.gusts.awaited and self.row[WING] >= WING_OUT:
             moving.tell("wing-out", self.t)
         if moving.active and self._blown is None:
-            self._blown = moving.motion(self.t, self._state)
+            self._blown = self._motion_from(self.t)
         self._attended = self.on_rail or self._left is not None or bool(moving.gusts.awaited)
 
     def _blow(self, blown: Iterator[tuple[float, ...]]) -> None:
@@ -421,6 +459,11 @@ class JsbsimPlant:
         turn_p(p)
         turn_q(q)
         turn_r(r)
+
+    def _motion_from(self, time: float) -> Iterator[tuple[float, ...]]:
+        """Let the air move from `time` on; it does not hold the aircraft, which goes with its last user."""
+        aircraft = proxy(self)
+        return self._moving.motion(time, lambda: aircraft._state())  # noqa: PLW0108 (a bound method would hold it)
 
     def _state(self) -> AirState:
         """What the air is told of the aircraft."""
@@ -453,8 +496,9 @@ class JsbsimPlant:
         north0, east0, altitude0, *_ = MOTION(self._datum)
         fx, fy, fz, mass, _, _, _, p, q, r, p_dot, q_dot, r_dot = row[FELT]
         x, y, z = body_axes(ATTITUDE(row))
-        pull = self._gravity / FT
-        an, ae, ad = ((fx * x[i] + fy * y[i] + fz * z[i]) / mass + (pull if i == 2 else 0.0) for i in range(3))
+        an = (fx * x[0] + fy * y[0] + fz * z[0]) / mass
+        ae = (fx * x[1] + fy * y[1] + fz * z[1]) / mass
+        ad = (fx * x[2] + fy * y[2] + fz * z[2]) / mass + self._gravity / FT
         half = 0.5 * ahead
         return Motion(
             (
@@ -589,7 +633,7 @@ class JsbsimPlant:
 
     def truth(self) -> dict[str, Array]:
         """Columns of the truth (`uavsim.truth.UNITS`), SI, one value a step."""
-        table = np.frombuffer(bytes(self._buffer[: self._size])).reshape(-1, len(RAW) + len(OWN))
+        table = np.frombuffer(memoryview(self._buffer).toreadonly(), count=self._size // 8).reshape(-1, ROW.size // 8)
         raw = {name: table[:, i] * factor for i, (name, (_, factor)) in enumerate(RAW.items())}
         raw["t"] = np.arange(len(table)) / self.settings.step_rate
         raw |= {name: table[:, len(RAW) + i] for i, name in enumerate(OWN)}
@@ -642,7 +686,10 @@ def load_airframe(airframe: Airframe) -> FGFDMExec:
 
 
 def _opened(airframe: Airframe, folder: Path) -> FGFDMExec:
-    set_logger(_Silence())
+    # A thread's end lets go of its logger without the interpreter's lock: were it the last to do so, it would end the
+    # process. This one is never let go of.
+    _leave_up(SILENCE)
+    set_logger(SILENCE)
     fdm = FGFDMExec(None)
     fdm.set_debug_level(0)
     for name in airframe.checked.early:
@@ -675,9 +722,9 @@ def _said(error: Exception, aircraft: str) -> str:
     return re.sub(where, "In file ", " ".join(str(error).split()))
 
 
-def _leave_up(fdm: FGFDMExec) -> None:
+def _leave_up(thing: FGFDMExec | FGLogger) -> None:
     """Never take this down: JSBSim works its functions out once more then, and what fails there ends the process."""
-    ctypes.pythonapi.Py_IncRef(ctypes.py_object(fdm))
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
 
 
 def _continuous(angle: Array) -> Array:

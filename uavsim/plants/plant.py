@@ -84,7 +84,7 @@ class Run:
     release_time
         When the latch lets go, or the rig begins, s.
     force_factor
-        This run's force over the nominal one.
+        This run's specific force of the push over the nominal one.
     random_seed
         Of the plant's own noise: turbulence, a curve's.
     step_rate

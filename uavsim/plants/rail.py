@@ -17,8 +17,8 @@ during which it holds; springs are taken with the motion of the step's middle. A
 Everything is SI; the rail's frame is (along, right, down), the body's (forward, right, down).
 """
 
-from dataclasses import dataclass
 from math import cos, pi, sin, tan
+from typing import NamedTuple
 
 from uavsim.plants.settings import LauncherSettings
 from uavsim.truth import STANDARD_GRAVITY
@@ -30,10 +30,11 @@ ROUNDING = 1e-9  # s, within which a step ends at the release
 CREEP_SPEED = 0.01  # m/s, below which friction fades to 0, so that a resting aircraft is not shaken
 
 Vector = tuple[float, float, float]
+Seen = tuple[float, float, float, float, float]
+"""Along one axis: the body's x, y and z, 1, its displacement, m, and its velocity, m/s."""
 
 
-@dataclass(frozen=True, slots=True)
-class Motion:
+class Motion(NamedTuple):
     """Where the aircraft is: NED displacement of its centre of gravity, its velocity, Euler angles, body rates."""
 
     displacement: Vector  # m, since rest
@@ -42,8 +43,7 @@ class Motion:
     rates: Vector  # rad/s
 
 
-@dataclass(frozen=True, slots=True)
-class RailForces:
+class RailForces(NamedTuple):
     """What the rail does to the aircraft, N and N m, in body axes (down and right are positive)."""
 
     axial: float
@@ -82,6 +82,12 @@ def turned(attitude: Vector, rates: Vector, time: float) -> Vector:
 
 def _dot(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _seen(axis: Vector, axes: tuple[Vector, Vector, Vector], motion: Motion) -> Seen:
+    """Return what of the body's axes, its displacement and its velocity is along an axis in NED."""
+    x, y, z = axes
+    return _dot(x, axis), _dot(y, axis), _dot(z, axis), _dot(motion.displacement, axis), _dot(motion.velocity, axis)
 
 
 def _ramp(since: float, length: float) -> float:
@@ -212,6 +218,7 @@ class Rail:
             return FREE
 
         held = [_share(leaves - self.travel, way) for leaves in (self._front_leaves, self.settings.stroke)]
+        normal, lateral = _seen(down, axes, motion), _seen(right, axes, motion)
         normal_loads, lateral_loads, couple = [], [], 0.0
         for shoe, rest, load, share in (
             (shoes[0], self._rest[0], self._front_rest, held[0]),
@@ -222,12 +229,12 @@ class Rail:
                 lateral_loads.append(0.0)
                 continue
             x, y, z = shoe
-            normal_loads.append(share * (load + self._spring(down, axes, motion, (x, y, z), rest[2])))
+            normal_loads.append(share * (load + self._spring(normal, motion.rates, shoe, rest[2])))
             # The slot's width takes the couple that a lateral force at the shoe would roll the aircraft with, so the
             # lateral guidance acts at the height of the centre of gravity and roll is held on its own.
-            lateral = share * self._spring(right, axes, motion, (x, y, 0.0), rest[1])
-            lateral_loads.append(lateral)
-            couple += z * lateral
+            sideways = share * self._spring(lateral, motion.rates, (x, y, 0.0), rest[1])
+            lateral_loads.append(sideways)
+            couple += z * sideways
 
         support = self._axial_rest - self._stiffness * middle - self._damping * speed
         if time > self.release_time:
@@ -245,13 +252,11 @@ class Rail:
             roll_moment=couple - held[1] * rolling,
         )
 
-    def _spring(
-        self, axis: Vector, axes: tuple[Vector, Vector, Vector], motion: Motion, place: Vector, level: float
-    ) -> float:
-        """Force of one shoe's spring and damper along `axis` (NED) at a place on the body, N; `level` at rest, m."""
+    def _spring(self, seen: Seen, rates: Vector, place: Vector, level: float) -> float:
+        """Force of one shoe's spring and damper along an axis at a place on the body, N; `level` at rest, m."""
+        a, b, c, displacement, velocity = seen
         x, y, z = place
-        p, q, r = motion.rates
-        a, b, c = _dot(axes[0], axis), _dot(axes[1], axis), _dot(axes[2], axis)
-        moved = _dot(motion.displacement, axis) + a * x + b * y + c * z - level
-        speed = _dot(motion.velocity, axis) + a * (q * z - r * y) + b * (r * x - p * z) + c * (p * y - q * x)
+        p, q, r = rates
+        moved = displacement + a * x + b * y + c * z - level
+        speed = velocity + a * (q * z - r * y) + b * (r * x - p * z) + c * (p * y - q * x)
         return -0.5 * (self._stiffness * moved + self._damping * speed)

@@ -21,10 +21,29 @@ class AircraftSettings:
     properties
         JSBSim properties of the aircraft that are written once before the flight, in JSBSim's own units; not those of
         the air, the place, the motion or the simulator.
+    mass_factor
+        Factor on the mass and on the moments of inertia about y and z. The catapult is set for the aircraft as it
+        should be: its force stays, and a heavier aircraft is accelerated less.
+    cg_shift
+        How far ahead of its place the centre of gravity is, m.
+    lift_factor
+        Factor on the whole aerodynamic force across the flow, in the plane of symmetry.
+    drag_factor
+        Factor on the whole aerodynamic force along the flow.
+    pitch_factor
+        Factor on the aerodynamic pitching moment about the reference point, that of the tail included.
+    thrust_factor
+        Factor on the propeller's thrust; what drives it stays.
     """
 
     model: str = "fw8"
     properties: dict[str, float] = field(default_factory=dict)
+    mass_factor: Annotated[float, Interval(ge=0.5, le=2)] = 1.0
+    cg_shift: Annotated[float, Interval(ge=-0.5, le=0.5)] = 0.0
+    lift_factor: Annotated[float, Interval(ge=0, le=3)] = 1.0
+    drag_factor: Annotated[float, Interval(ge=0, le=10)] = 1.0
+    pitch_factor: Annotated[float, Interval(ge=0, le=3)] = 1.0
+    thrust_factor: Annotated[float, Interval(ge=0, le=3)] = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +69,8 @@ class LauncherSettings:
         Of the aircraft's centre of gravity above the ground before release, m.
     friction
         Coulomb coefficient between shoes and rail.
+    force_factor
+        Factor on the force of the push, beside the one that is drawn.
     force_spread
         Half-width of the uniform distribution from which a flight's force factor is drawn (0.02: ±2 %).
     wait_min
@@ -66,6 +87,7 @@ class LauncherSettings:
     heading_deg: Annotated[float, Interval(ge=-360, le=360)] = 0.0
     height: Annotated[float, Interval(ge=0.3, le=100)] = 1.5
     friction: Annotated[float, Interval(ge=0, le=0.5)] = 0.01
+    force_factor: Annotated[float, Interval(gt=0, le=3)] = 1.0
     force_spread: Annotated[float, Interval(ge=0, le=0.3)] = 0.02
     wait_min: Annotated[float, Ge(1.6)] = 2.0
     wait_max: Annotated[float, Gt(1.6)] = 4.0

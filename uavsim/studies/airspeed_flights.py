@@ -14,6 +14,7 @@ once more, and what it would have said at each of them is written down.
 """
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,7 @@ from uavsim.studies.cramer_rao import AirspeedBound, Courses, Schedule, Start
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
+B = TypeVar("B", bound=AirspeedBound)
 
 STEP = 2e-3  # s, of the common time axis of courses
 LEAD = 0.6  # s before the true launch from which a course is kept; the filter starts later
@@ -142,6 +144,12 @@ def bound(flight: Flight, courses: Courses) -> tuple[Array, Array]:
     courses : Courses
         Those of many flights, its own among them, or its own alone.
     """
+    t, least = bound_of(flight, courses, AirspeedBound)
+    return t, least.sd()
+
+
+def bound_of(flight: Flight, courses: Courses, kind: type[B]) -> tuple[Array, B]:
+    """Return the times of a flight's readings since its true launch, s, and the bound, which is not yet computed."""
     scenario = scenario_of(flight)
     noise = believed_noise(scenario, draw(scenario).calibration)
     settings = believed_air(scenario)
@@ -165,7 +173,7 @@ def bound(flight: Flight, courses: Courses) -> tuple[Array, Array]:
     square = 2.0 * sigma * GAS_CONSTANT_DRY_AIR * courses.temperature / float(courses.static[:, 0].mean())
     known = 0.5 * square / speed if speed * speed >= VISIBLE**2 * square else HIDDEN * np.sqrt(square)
     begun = Start(rest, tare, min(float(known), settings.wind_sd))
-    return t[rows], AirspeedBound(courses, schedule, settings, noise, begun).sd()
+    return t[rows], kind(courses, schedule, settings, noise, begun)
 
 
 def true_airspeed(flight: Flight, time: Array) -> Array:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from uavsim.flight import Flight
 from uavsim.scenario import Scenario
-from uavsim.studies.campaign.campaign import Flights, first_flight, limit_of
+from uavsim.studies.campaign.campaign import limit_of
 from uavsim.studies.campaign.flown import ERROR_START, ERROR_STEP, ErrorTrace, Flown, fly_position
 from uavsim.studies.campaign.keep import FIRST_AND_FAILURES
 from uavsim.studies.campaign.plan import Seeds
@@ -88,7 +88,7 @@ def fly_seeds(
     """
     import pandas as pd
 
-    plan = Seeds(scenario, tuple(seeds))
+    plan = Seeds(scenario.checked(), tuple(seeds))
     started = time.monotonic()
     done: dict[int, Flown] = {}
     lost: tuple[int, ...] = ()
@@ -115,18 +115,4 @@ def fly_seeds(
         complete=len(done) == len(seeds),
         wall_time=time.monotonic() - started,
         lost=lost,
-    )
-
-
-def batch_of(flights: Flights) -> Batch:
-    """Return what a campaign's folder holds of all flights together."""
-    first = first_flight(flights)
-    return Batch(
-        scenario=flights.scenario,
-        runs=flights.runs,
-        traces=flights.traces,
-        kept={} if first is None else {first[0]: first[1]},
-        complete=flights.complete,
-        wall_time=flights.wall_time,
-        lost=tuple(flights.plan.index(one.position) for one in flights.left),
     )

@@ -14,6 +14,7 @@ Of that, what would run on the aircraft: detector and airspeed estimator over a 
 single steps, each with the clock's own cost in it.
 """
 
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from statistics import median
@@ -21,6 +22,7 @@ from time import perf_counter
 
 from uavsim.beliefs import believed_air, believed_noise
 from uavsim.cosim import Cosimulation, Draws, draw, plant_settings, tare_window
+from uavsim.dispersions import resolved
 from uavsim.onboard import airspeed, launch
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.plants.plant import Commands
@@ -55,6 +57,7 @@ class OnboardCost:
 
 def measure_onboard(scenario: Scenario) -> OnboardCost:
     """Run detector and estimator of a scenario over the readings of its flight with an accelerometer at 1 kHz."""
+    scenario = resolved(scenario, scenario.index)
     accelerometer = replace(scenario.accelerometer, preset=PART, rate=RATE, range_g=None, filter=None)
     timed = Scenario.from_dict(replace(scenario, accelerometer=accelerometer).to_dict())
     simulation = Cosimulation(timed)
@@ -70,7 +73,7 @@ def measure_onboard(scenario: Scenario) -> OnboardCost:
     return OnboardCost(mean=1e6 * min(whole) / len(forces), p99=1e6 * min(single), steps=len(forces))
 
 
-def _rows(flat: list[float], width: int) -> list[tuple[float, ...]]:
+def _rows(flat: "array[float]", width: int) -> list[tuple[float, ...]]:
     return list(zip(*(flat[i::width] for i in range(width)), strict=True))
 
 
@@ -131,6 +134,7 @@ def measure(scenario: Scenario, *, progress: Callable[[float], None]) -> Cost:
     """
     if not scenario.plant.chosen.flies:
         raise ValueError(f"{scenario.name}: plant.kind = {scenario.plant.kind!r}: only a flight in JSBSim has it")
+    scenario = resolved(scenario, scenario.index)
     leader = _TapedPlant(scenario)
     loop = Cosimulation(scenario, plant=leader)
     reference = JsbsimPlant(plant_settings(scenario, draw(scenario)))

@@ -11,6 +11,7 @@ unless the user insists.
 
 import ipaddress
 import json
+import logging
 import os
 import tempfile
 import warnings
@@ -31,6 +32,7 @@ PATIENCE = 10.0  # s that a scheduler has to answer
 LOOK = 5.0  # s between two looks how many workers there are
 ENDING = 5.0  # s that processes have to end by themselves
 LARGEST_FILE = 1_000_000  # bytes of a scheduler file
+SILENT = 100  # above every level
 QUIET = {  # of the cluster of this machine
     "distributed.scheduler.allowed-failures": 0,  # who dies with a worker is ours to say
     "distributed.scheduler.work-stealing": False,  # there is one task a worker
@@ -135,7 +137,7 @@ def _cluster(workers: int, *, dashboard: bool) -> "LocalCluster":
             dashboard_address="127.0.0.1:0",
             scheduler_kwargs={"dashboard": dashboard},
             memory_limit=None,
-            silence_logs=100,
+            silence_logs=SILENT,
         )
     except (RuntimeError, OSError, TimeoutError) as error:
         raise ClusterError(
@@ -145,8 +147,9 @@ def _cluster(workers: int, *, dashboard: bool) -> "LocalCluster":
 
 
 def _alive(cluster: "LocalCluster") -> int:
-    """How many can be given work: not those that have died and are not yet there again, so that none is blamed twice."""
-    return max(1, len(cluster.scheduler.workers))
+    """How many can be given work; not those that have died and are not there again, so that none is blamed twice."""
+    scheduler: Any = cluster.scheduler
+    return max(1, len(scheduler.workers))
 
 
 def _quiet() -> Any:
@@ -206,9 +209,14 @@ def remote(where: Remote) -> Iterator[Site]:
     ClusterError
         One line: no such address or file, no encryption, or no answer within 10 s.
     """
+    address, security = _address(where), _security(where)
+    with _silent():
+        yield from _reached(address, security)
+
+
+def _reached(address: str, security: "Security | None") -> Iterator[Site]:
     from distributed import Client
 
-    address, security = _address(where), _security(where)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # versions are compared by us
@@ -220,6 +228,22 @@ def remote(where: Remote) -> Iterator[Site]:
     finally:
         with suppress(Exception):
             client.close(timeout=ENDING)
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Let distributed write no lines of its own: what matters of it becomes an error of ours."""
+    import distributed  # noqa: F401 (has its loggers made)
+
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    before = [(logger, logger.level) for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(SILENT)
+    try:
+        yield
+    finally:
+        for logger, level in before:
+            logger.setLevel(level)
 
 
 def of_client(client: "Client") -> Site:
@@ -247,19 +271,18 @@ def _address(where: Remote) -> str:
         address = _of_file(address)
     if "://" not in address:
         address = f"tcp://{address}"
-    try:
+    scheme, host, port = "", None, None
+    with suppress(ValueError):
         parts = urlsplit(address)
-        host, port = parts.hostname, parts.port
-    except ValueError:
-        host = port = None
-    if parts.scheme not in ("tcp", "tls") or not host or not port:
+        scheme, host, port = parts.scheme, parts.hostname, parts.port
+    if scheme not in ("tcp", "tls") or not host or not port:
         raise ClusterError(f"the scheduler {where.address!r}: give tcp://HOST:PORT, tls://HOST:PORT or its file")
-    if parts.scheme != "tls" and not _is_loopback(host) and not where.insecure:
+    if scheme != "tls" and not _is_loopback(host) and not where.insecure:
         raise ClusterError(
             f"the scheduler {address} is neither encrypted nor on this machine: whoever can reach it can run code as "
             "you, and change results; use tls:// (docs/clusters.md), or say --insecure on a network of your own"
         )
-    if parts.scheme == "tls" and not (where.ca and where.certificate and where.key):
+    if scheme == "tls" and not (where.ca and where.certificate and where.key):
         raise ClusterError(f"the scheduler {address} needs --tls-ca, --tls-cert and --tls-key")
     return address
 

@@ -28,7 +28,8 @@ from uavsim.studies.cluster import ClusterError, Remote, Site, local, of_client,
 from uavsim.studies.identity import differences, identity
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client as Client  # noqa: PLC0414 (others name it)
+    from distributed import Future
 
 A = TypeVar("A")
 R = TypeVar("R")

@@ -6,6 +6,7 @@ extreme quantiles no such interval exists; then the band is open on that side.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,25 +39,38 @@ def quantile_band(sample: NDArray[np.float64], probability: float, confidence: f
     ValueError
         If the sample is empty or the probabilities lie outside (0, 1).
     """
-    from scipy.stats import binom
-
     if sample.size == 0 or not np.all(np.isfinite(sample)):
         raise ValueError("a quantile needs at least one value, and finite ones")
+    ordered = np.sort(sample)
+    low, high = quantile_ranks(ordered.size, probability, confidence)
+    return QuantileBand(
+        probability,
+        float(np.quantile(ordered, probability)),
+        float(ordered[low - 1]) if low >= 1 else None,
+        float(ordered[high - 1]) if high <= ordered.size else None,
+    )
+
+
+@cache
+def quantile_ranks(n: int, probability: float, confidence: float = 0.95) -> tuple[int, int]:
+    """Ranks, 1 … n, of the order statistics that bound a quantile; 0 and n + 1 where there is no bound.
+
+    Raises
+    ------
+    ValueError
+        If the probabilities lie outside (0, 1).
+    """
+    from scipy.stats import binom
+
     if not 0.0 < probability < 1.0 or not 0.0 < confidence < 1.0:
         raise ValueError("probabilities must lie between 0 and 1")
-    ordered = np.sort(sample)
-    n, tail = ordered.size, (1.0 - confidence) / 2.0
+    tail = (1.0 - confidence) / 2.0
     counts = binom.cdf(np.arange(n + 1), n, probability)  # P(B <= k)
     # x_(l) is below the quantile unless fewer than l values are: P(B <= l - 1) <= tail.
     low = int(np.searchsorted(counts, tail, side="right"))  # the largest l that satisfies it
     # x_(u) is above the quantile unless u values or more are: P(B >= u) = 1 - P(B <= u - 1) <= tail.
     high = int(np.searchsorted(counts, 1.0 - tail, side="left")) + 1
-    return QuantileBand(
-        probability,
-        float(np.quantile(ordered, probability)),
-        float(ordered[low - 1]) if low >= 1 else None,
-        float(ordered[high - 1]) if high <= n else None,
-    )
+    return low, high
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from sensors import Accelerometer, Streams, Vibration
 from uavsim.cosim import draw, make_plant
+from uavsim.dispersions import resolved
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.scenario import Scenario
 from uavsim.score import Judged
@@ -115,7 +116,7 @@ class Flown:
         """Fly what a seed needs, so that reading is quick."""
         for i in range(self.flights):
             if (seed, i) not in self._known:
-                self._known[seed, i] = _fly(self.scenario.with_seed(seed), i)
+                self._known[seed, i] = _fly(resolved(self.scenario.with_seed(seed), i))
 
     def read(self, seed: int, first: int, count: int) -> Trials:
         """Return some trials; see `Launches`.
@@ -128,7 +129,7 @@ class Flown:
         self.fly(seed)
         with _uncollected():
             felt = [
-                _feel(self.scenario, self._known[seed, i % self.flights], Streams(seed, NOISE + i))
+                _feel(self._known[seed, i % self.flights], Streams(seed, NOISE + i))
                 for i in range(first, first + count)
             ]
         force, start, rate, truths = zip(*felt, strict=True) if felt else ((), (), (), ())
@@ -139,6 +140,7 @@ class Flown:
 class _Flight:
     """Truth of a flight without commands: force at each step, release, rail exit and judged times, s."""
 
+    scenario: Scenario  # its own, with what was drawn
     force: tuple[tuple[float, float, float], ...]
     first: int  # step of the first force
     release: float
@@ -159,8 +161,8 @@ def _uncollected() -> Iterator[None]:
             gc.enable()
 
 
-def _fly(scenario: Scenario, index: int) -> _Flight:
-    drawn = draw(scenario, index)
+def _fly(scenario: Scenario) -> _Flight:
+    drawn = draw(scenario)
     plant = make_plant(scenario, drawn)
     last = min(scenario.duration, drawn.release_time + LONGEST)
     left, exit_time = plant.on_rail, inf
@@ -182,7 +184,7 @@ def _fly(scenario: Scenario, index: int) -> _Flight:
     push = nominal if scenario.plant.chosen.rings else 0.0
     truth = LaunchTruth(onset, judged.crossing_time, float(axial.max()), end)
     rows: tuple[tuple[float, float, float], ...] = tuple(map(tuple, force[first:].tolist()))
-    return _Flight(rows, first, drawn.release_time, exit_time, push, truth)
+    return _Flight(scenario, rows, first, drawn.release_time, exit_time, push, truth)
 
 
 def uncommanded(scenario: Scenario, index: int = 0) -> tuple[Array, float, float]:
@@ -199,12 +201,13 @@ def uncommanded(scenario: Scenario, index: int = 0) -> tuple[Array, float, float
     ValueError
         If the catapult does not move the aircraft.
     """
-    flight, rate = _fly(scenario, index), scenario.plant.step_rate
+    flight, rate = _fly(resolved(scenario, index)), scenario.plant.step_rate
     return np.array(flight.force), float(rate), flight.truth.end - flight.first / rate
 
 
-def _feel(scenario: Scenario, flight: _Flight, streams: Streams) -> tuple[Array, float, float, LaunchTruth]:
+def _feel(flight: _Flight, streams: Streams) -> tuple[Array, float, float, LaunchTruth]:
     """Let one unit feel a flight; return its readings, the time of the first, its rate, and the truth, s."""
+    scenario = flight.scenario
     settings, rate = scenario.accelerometer, scenario.plant.step_rate
     dt, begin = 1.0 / rate, flight.first / rate
     vibration = Vibration(

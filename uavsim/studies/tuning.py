@@ -223,7 +223,7 @@ class _Search:
         self.scenario, self.base, self.budget, self.seed, self.trials = scenario, base, budget, seed, trials
         self.fresh = (seed + 1) % 2**63
         self.launches, self.workers = _Kept(Flown(scenario)), workers
-        self.push = scenario.launcher.peak_specific_force_g * G0
+        self.push = scenario.launcher.peak_specific_force_g * G0 * scenario.push_factor
         self.level = level_of(base)
         if self.level is None:
             raise ValueError(f"detector {base.kind!r} has no level to tune; it flies with the settings that it has")

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from uavsim.plugins import Source
     from uavsim.studies.batch import Batch
     from uavsim.studies.bench import Cost, OnboardCost
+    from uavsim.studies.campaign.many import Many
     from uavsim.studies.operating import Operating
     from uavsim.studies.sensor_bench import Bench
     from uavsim.studies.tuning import Tuned
@@ -53,20 +54,24 @@ def flight(flown: "Flight", folder: Path) -> Document:
     return plain({"folder": folder, "scenario": flown.scenario["name"], "score": flown.score})  # type: ignore[no-any-return]
 
 
-def batch(flown: "Batch", folder: Path) -> Document:
-    """Of `uavsim fly --seeds`."""
-    from uavsim.views.batch_summary import summary
+def batch(flown: "Batch | Many", folder: Path, *, seeds: bool = False, with_rows: bool = True) -> Document:
+    """Of `uavsim fly --seeds` and of a campaign, whose many rows are in its folder and may be left out."""
+    from uavsim.studies.campaign.many import many
+    from uavsim.views.campaign.summary import curves, summary
 
+    flights = many(flown)
+    lost = "lost_seeds" if seeds else "lost"
     found: Document = plain(
         {
             "folder": folder,
             "scenario": flown.scenario.name,
             "complete": flown.complete,
-            "lost_seeds": flown.lost,
-            "summary": summary(flown),
+            lost: flown.lost,
+            "summary": summary(flights, folder),
+            **curves(flights),
         }
     )
-    return {**found, "rows": rows(flown.runs)}
+    return {**found, "rows": rows(flown.runs)} if with_rows else found
 
 
 def presets() -> Document:

@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Iterable
 from itertools import zip_longest
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich import box
@@ -17,7 +18,6 @@ from rich.table import Table
 from rich.text import Text
 
 from uavsim.scenario import scenario_of
-from uavsim.views.faults import told
 from uavsim.views.notes import notes
 from uavsim.views.text import visible
 
@@ -26,10 +26,9 @@ if TYPE_CHECKING:
     from uavsim.scenario import Scenario
     from uavsim.studies.batch import Batch
     from uavsim.studies.bench import Cost, OnboardCost
+    from uavsim.studies.campaign.many import Many
 
 NARROWEST, WIDEST = 80, 110  # columns; below the former figures would be cut, beyond the latter lines are hard to read
-MOST_REASONS = 3  # why flights ended otherwise than expected, that are told
-QUANTILES = {"5 %": "p05", "median": "median", "95 %": "p95"}  # of `batch_summary`
 
 
 class _Console(Console):
@@ -198,86 +197,11 @@ def _wanted(low: float | None, high: float | None) -> str:
 # -- several flights -------------------------------------------------------------------------------------------------
 
 
-def print_batch(flown: "Batch") -> None:
-    """Print what several flights gave: outcomes, quantiles of latency and error, what was not as it should be."""
-    from uavsim.consistency import mean_band
-    from uavsim.views.batch_summary import summary
+def print_batch(flown: "Batch | Many", folder: Path | None = None) -> None:
+    """Print what many flights gave, `campaign.terminal.print_many`."""
+    from uavsim.views.campaign.terminal import print_many
 
-    console, found = _console(), summary(flown)
-    outcomes = ", ".join(f"{count} {name}" for name, count in found["outcomes"].items())
-    _print(console, words("\n", (flown.scenario.name, "bold"), f", {_flights(found['flights'])}: {outcomes}\n"))
-    table = _quantile_table(found["quantiles"])
-    if table.row_count:
-        _print(console, table, "")
-    wrong = told(flown.scenario, flown.scenario.duration)
-    if wrong:
-        _print(console, f"Set to go wrong: {wrong}; √PCRB knows of no fault")
-    for name, error in found["airspeed_bound"].items():
-        when = "from 0.1 to 2 s after launch" if name == "first_2_s" else "later"
-        ratio = f"{error['rmse']:.3f} / {error['bound']:.3f} m/s = {error['ratio']:.2f}"
-        _print(console, f"RMSE over √PCRB {when}: {ratio}")
-    if found["airspeed_bound"]:
-        low, high = (bound**0.5 for bound in mean_band(len(flown.traces)))
-        flights = f"{_flights(len(flown.traces))} at the bound"
-        _print(console, f"  {flights}: 95 % within {low:.2f} … {high:.2f} (error constant over a flight)")
-    _print(
-        console,
-        f"False detections before release: {found['false_detections']}",
-        f"Flights with a requirement that is not met: {found['requirements_unmet']}",
-        *_reasons(flown),
-    )
-
-
-def _reasons(flown: "Batch") -> list[str]:
-    """Why flights ended that did not end as expected, the most frequent first."""
-    if "reason" not in flown.runs:
-        return []
-    unexpected = flown.runs["outcome"] != flown.runs["expected"]
-    counted = flown.runs["reason"][unexpected].dropna().value_counts().head(MOST_REASONS)
-    return [f"{_flights(int(count))}: {reason}" for reason, count in counted.items()]
-
-
-def _flights(number: int) -> str:
-    return f"{number} flight" if number == 1 else f"{number} flights"
-
-
-def _quantile_table(quantiles: dict[str, Any]) -> Table:
-    """Return the figures that there are, as `batch_summary` has them, in the units of the table."""
-    table = _table(("Quantiles and 95 % bands", "least", *QUANTILES, "greatest"))
-    for label, key, factor, digits in (
-        ("latency, ms", "launch.latency", 1e3, 1),
-        ("  from the 4.5 g, ms", "launch.latency_from_crossing", 1e3, 1),
-        ("airspeed off the rail, m/s", "flight.rail_exit_speed", 1.0, 2),
-        ("RMSE filtered, m/s", "airspeed.rmse", 1.0, 3),
-        ("reduction, %", "airspeed.reduction_percent", 1.0, 1),
-        ("  in the stroke, %", "airspeed.stroke.reduction_percent", 1.0, 1),
-        ("  in cruise, %", "airspeed.cruise.reduction_percent", 1.0, 1),
-        ("within ±1.96 sd in cruise", "airspeed.cruise.coverage_95", 1.0, 3),
-    ):
-        if key not in quantiles:
-            continue
-        found = quantiles[key]
-        cells = (_with_band(found[name], factor, digits) for name in QUANTILES.values())
-        least, greatest = (_number(factor * found[name], digits) for name in ("least", "greatest"))
-        table.add_row(label, least, *cells, greatest)
-    return table
-
-
-def _with_band(quantile: dict[str, float | None], factor: float, digits: int) -> Text:
-    """Return a quantile above its band, which few flights leave open on a side."""
-    value, low, high = (
-        None if one is None else factor * one for one in (quantile["value"], quantile["low"], quantile["high"])
-    )
-    band = f"{_number(low, digits)}…{_number(high, digits)}"
-    if low is None or high is None:
-        band = (
-            f"≥ {_number(low, digits)}"
-            if low is not None
-            else f"≤ {_number(high, digits)}"
-            if high is not None
-            else "–"
-        )
-    return words(f"{_number(value, digits)}\n", (band, "dim"))
+    print_many(flown, folder)
 
 
 # -- cost ------------------------------------------------------------------------------------------------------------

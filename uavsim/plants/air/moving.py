@@ -212,7 +212,6 @@ class MovingAir:
         self._rate, self._ahead = step_rate, max(1, round(AHEAD * step_rate))
         self._random = [np.random.Generator(np.random.PCG64(s)) for s in np.random.SeedSequence(seed).spawn(2)]
         self._noise: list[Iterator[Array]] = [iter(()), iter(())]
-        self._run = blow.code  # called every 20 ms: a look-up less
         self._box = np.zeros(BOX)
         self._box[:8] = *wind.law(environment), environment.turbulence_wind_20ft, span, 1.0 / step_rate
         self._record = np.zeros((steps + self._ahead if self.blows else 0, COLUMNS))
@@ -267,7 +266,7 @@ class MovingAir:
         low, high, upper = self._normal(0) if self._rough else NO_NOISE, NO_NOISE, 0.0
         if self._rough and state.height > LOW * FOOT:
             high, upper = self._normal(1), sd_above(state.height, self._severity)
-        self._run(out, self._box, low, high, *state, upper)
+        blow.code(out, self._box, low, high, *state, upper)
         self._size += self._ahead
         return out
 

@@ -2,25 +2,31 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from uavsim.flight import load
-from uavsim.scenario import Scenario
+from uavsim.folders import StandingPlace
+from uavsim.scenario import Scenario, load_scenario
+from uavsim.score_keys import NUMBERS
 from uavsim.studies.campaign.flown import ErrorTrace, Flown, fly_position
-from uavsim.studies.campaign.keep import Keep
-from uavsim.studies.campaign.plan import Plan, position_of
-from uavsim.studies.campaign.record import FLIGHTS, Record, frame, plan_in, traces
-from uavsim.studies.engine import Crew, Left
+from uavsim.studies.campaign.keep import Keep, keep_of
+from uavsim.studies.campaign.plan import Design, Plan, Random, position_of
+from uavsim.studies.campaign.record import ABOUT, FLIGHTS, Record, frame, plan_in, taken_up, traces
+from uavsim.studies.engine import Crew, Left, engine
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from uavsim.flight import Flight
+    from uavsim.studies.engine import Client
 
+SAMPLINGS = ("random", "latin-hypercube", "sobol")
 SLOWEST = 5e-3  # s a step of a plant, with the slowest plug-in that is let fly
 LEAST_LIMIT = 600.0  # s
 
@@ -41,6 +47,8 @@ class Flights:
     complete : bool
     wall_time : float
         s, of this run.
+    holder : object
+        What keeps the folder in being, if it is one that vanishes with this.
     """
 
     folder: Path
@@ -48,6 +56,7 @@ class Flights:
     left: tuple[Left, ...] = ()
     complete: bool = True
     wall_time: float = 0.0
+    holder: object = None
 
     @property
     def scenario(self) -> Scenario:
@@ -86,6 +95,101 @@ class Flights:
             There is none.
         """
         return scenario_in(self.plan, index)
+
+
+def campaign(
+    scenario: "str | Path | Scenario" = "dispersed",
+    *,
+    runs: int,
+    seed: int | None = None,
+    overrides: Iterable[str] = (),
+    sampling: str = "random",
+    out: "str | Path | None" = None,
+    resume: bool = False,
+    keep: str = "none",
+    workers: int | None = None,
+    client: "Client | None" = None,
+    progress: Progress | None = None,
+) -> Flights:
+    """Fly a scenario many times, each flight with its own draws.
+
+    Parameters
+    ----------
+    scenario
+        A packaged name, the path of a TOML file, or a `Scenario`.
+    runs
+        How many flights.
+    seed
+        Instead of the scenario's own.
+    overrides
+        ``KEY=VALUE`` each; only with a name or path.
+    sampling
+        "random", or for means "latin-hypercube" or "sobol".
+    out
+        Folder to write; None: one that vanishes with what is returned.
+    resume
+        Go on with what `out` holds.
+    keep
+        Which flights are kept whole, see `keep`.
+    workers
+        Processes of this machine; None: one a processor; 0: all is flown in this one.
+    client
+        A client of `distributed` that flies instead; used as it is, and left open.
+    progress
+        Called as flights are finished.
+
+    Returns
+    -------
+    Flights
+        Its `runs` are a frame, a row a flight.
+
+    Raises
+    ------
+    ValueError
+        One line: what cannot be flown or taken up, and why.
+    OSError
+        `out` is not empty, or cannot be written.
+    ClusterError
+        The workers cannot be used.
+    """
+    if runs < 1:
+        raise ValueError(f"runs = {runs}: must be at least 1")
+    plan = sampled(given_scenario(scenario, seed=seed, overrides=overrides), runs, sampling)
+    rule = keep_of(keep, NUMBERS)
+    holder = TemporaryDirectory(prefix="uavsim-")
+    with (
+        StandingPlace(holder.name if out is None else out, resume=resume) as place,
+        engine(workers=workers, client=client) as crew,
+    ):
+        known = resume and (place.folder / ABOUT).is_file()
+        record = Record(place.folder, plan, keep=keep, before=taken_up(place.folder, plan) if known else None)
+        return replace(fly_plan(record, crew, rule, progress=progress), holder=holder if out is None else None)
+
+
+def given_scenario(
+    scenario: "str | Path | Scenario", *, seed: int | None = None, overrides: Iterable[str] = ()
+) -> Scenario:
+    """Return a scenario that is given by name, path or as itself, checked."""
+    if isinstance(scenario, Scenario):
+        return (scenario if seed is None else scenario.with_seed(seed)).checked()
+    return load_scenario(scenario, overrides=overrides, seed=seed)
+
+
+def sampled(scenario: Scenario, runs: int, sampling: str) -> Plan:
+    """Return what flies.
+
+    Raises
+    ------
+    ValueError
+        No such sampling, or a number of flights that it does not have.
+    """
+    if sampling not in SAMPLINGS:
+        raise ValueError(f"sampling {sampling[:40]!r}: must be one of {', '.join(SAMPLINGS)}")
+    if sampling == "random":
+        return Random(scenario, runs)
+    plan = Design(scenario, runs, sampling)
+    _ = plan.points  # which cannot be made of any number
+    return plan
 
 
 def opened(folder: str | Path) -> Flights:
@@ -164,24 +268,29 @@ def fly_plan(
         if progress is not None:
             progress(record.finished, plan.size, outcomes)
 
-    left: list[Left] = []
-    try:
-        left = [
-            Left(wanted[one.position], one.why)
-            for one in crew.each(partial(fly_position, plan, keep, limit), wanted, done=done, limit=limit)
-        ]
-        if keep.later and record.finished == plan.size:
-            _keep_later(record, crew, keep, limit)
-    finally:
-        complete = record.finished == plan.size
-        spent = time.monotonic() - started
+    def describe(left: Sequence[Left]) -> tuple[bool, float]:
+        complete, spent = record.finished == plan.size, time.monotonic() - started
         record.describe(complete=complete, wall_time=spent, left=left)
-    return Flights(record.folder, plan, tuple(left), complete, spent)
+        return complete, spent
+
+    try:
+        not_done = crew.each(partial(fly_position, plan, keep, limit), wanted, done=done, limit=limit)
+        left = [Left(wanted[one.position], one.why) for one in not_done]
+        if record.finished == plan.size:
+            keep_later(record, crew, keep, limit)
+    except BaseException:
+        with suppress(OSError):  # what ended it says more
+            describe(())
+        raise
+    return Flights(record.folder, plan, tuple(left), *describe(left))
 
 
-def _keep_later(record: Record, crew: Crew, keep: Keep, limit: float) -> None:
-    """Fly those once more that only all rows together tell."""
+def keep_later(record: Record, crew: Crew, keep: Keep, limit: float | None = None) -> None:
+    """Fly those once more that only all rows together tell; nothing by another rule."""
+    if not keep.later:
+        return
     plan = record.plan
+    limit = limit_of(plan) if limit is None else limit
     kept = record.folder / FLIGHTS
     indices = [i for i in keep.among(frame(record.folder, keep.columns)) if not (kept / str(i)).is_dir()]
     positions = [position_of(plan, index) for index in indices]
@@ -196,9 +305,3 @@ def _keep_later(record: Record, crew: Crew, keep: Keep, limit: float) -> None:
 
 def _fly_whole(plan: Plan, limit: float, position: int) -> Flown:
     return fly_position(plan, Keep("all"), limit, position)
-
-
-def first_flight(flights: Flights) -> "tuple[int, Flight] | None":
-    """Return the first flight that was kept, with its index; None if there is none."""
-    kept = flights.kept()
-    return (kept[0], flights.flight(kept[0])) if kept else None

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from uavsim.cosim import CHUNK, Cosimulation
 from uavsim.flight import Flight
 from uavsim.onboard.airspeed.kinds import is_aided
-from uavsim.scenario import Scenario, scenario_of
+from uavsim.scenario import Scenario
 from uavsim.score import HIDDEN
 from uavsim.studies.airspeed_flights import Course, course
 from uavsim.studies.campaign.keep import Keep
@@ -104,7 +104,9 @@ def fly_position(plan: Plan, keep: Keep, limit: float | None, position: int) -> 
     scenario = plan.flight(position)
     flight = _fly(scenario, limit)
     row = row_of(flight, index=plan.index(position), columns=plan.columns(position))
-    traced = trace(flight, plan.index(position), with_course=position < COURSES) if position < TRACED else None
+    traced = (
+        trace(flight, scenario, plan.index(position), with_course=position < COURSES) if position < TRACED else None
+    )
     return Flown(row, traced, flight if keep.wants(position, row) else None)
 
 
@@ -152,7 +154,7 @@ def as_expected(row: dict[str, Any]) -> bool:
 # -- errors over time --------------------------------------------------------------------------------------------------
 
 
-def trace(flight: Flight, index: int, *, with_course: bool) -> ErrorTrace:
+def trace(flight: Flight, scenario: Scenario, index: int, *, with_course: bool) -> ErrorTrace:
     """Return a flight's airspeed errors over time; empty if it was never launched."""
     true_time = flight.score["launch"]["true_time"]
     if true_time is None:
@@ -165,7 +167,7 @@ def trace(flight: Flight, index: int, *, with_course: bool) -> ErrorTrace:
     filtered, raw = (
         _binned_rms(estimate[column].to_numpy(float) - airspeed, bins) for column in ("airspeed", "airspeed_raw")
     )
-    bounded = is_aided(scenario_of(flight).estimator.kind) and flight.score["launch"]["detected_time"] is not None
+    bounded = is_aided(scenario.estimator.kind) and flight.score["launch"]["detected_time"] is not None
     return ErrorTrace(
         flight.score["seed"],
         filtered,

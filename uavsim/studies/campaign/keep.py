@@ -70,7 +70,7 @@ class Keep:
         """Return the indices of those to keep of all flights; only of a rule that is told `later`."""
         if self.rule == "failures":
             failed = (runs["outcome"] != runs["expected"]) | ~runs["requirements.met"].astype(bool)
-            return [int(index) for index in runs["index"][failed].head(self.number)]
+            return [int(index) for index in runs["index"][failed].iloc[: self.number]]
         values = runs[self.key].to_numpy(float)
         badness = np.where(np.isnan(values), np.inf, values if self.rule == "worst" else -values)
         order = np.argsort(-badness, kind="stable")[: self.number]

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from uavsim import dispersions
 from uavsim.cosim import draw
-from uavsim.scenario import Scenario, changed
+from uavsim.scenario import Scenario
+from uavsim.studies.campaign.vary import applied, labels
 
 LARGEST = 2**40  # flights
 DRAW, VARY = "draw.", "vary."
@@ -225,7 +226,13 @@ class Cells:
     @cached_property
     def scenarios(self) -> tuple[Scenario, ...]:
         """One a cell."""
-        return tuple(changed(self.scenario, cell) for cell in self.cells)
+        return tuple(applied(self.scenario, dict(cell)) for cell in self.cells)
+
+    @cached_property
+    def _labels(self) -> tuple[Row, ...]:
+        """What the rows of each cell say of it."""
+        columns = {key: labels([cell[key] for cell in self.cells]) for key in (self.cells[0] if self.cells else ())}
+        return tuple({VARY + key: column[i] for key, column in columns.items()} for i in range(len(self.cells)))
 
     def index(self, position: int) -> int:
         """Return the number by which people know the flight."""
@@ -240,17 +247,11 @@ class Cells:
         """Return what its row says besides the score."""
         cell, run = divmod(position, self.runs)
         values = dispersions.drawn(self.scenarios[cell], run)
-        varied = {VARY + key: _told(value) for key, value in self.cells[cell].items()}
-        return {"run": run, **varied, **_drawn(self.flight(position), values)}
+        return {"run": run, **self._labels[cell], **_drawn(self.flight(position), values)}
 
     def to_dict(self) -> Row:
         """Return everything but the scenario, as plain values."""
         return {"kind": self.kind, "cells": [dict(cell) for cell in self.cells], "runs": self.runs}
-
-
-def _told(value: Any) -> Any:
-    """A value as a column holds it: lists and groups as text."""
-    return value if isinstance(value, str | bool | int | float) else str(value)
 
 
 KINDS: dict[str, type[Any]] = {kind.kind: kind for kind in (Seeds, Random, Design, Points, Cells)}

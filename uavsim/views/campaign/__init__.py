@@ -1,0 +1,1 @@
+"""Many flights to look at: figures, tables and numbers of a campaign."""
