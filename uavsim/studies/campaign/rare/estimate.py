@@ -36,9 +36,11 @@ Method = Literal[
 ]
 
 RUNS = 10  # of splitting
-AIM = 0.97  # of the budget; trials have random lengths
+AIM = 0.94  # of the budget; trials have random lengths, and the last run cannot be mended
 PILOT = 0.45  # of the budget, for the subset simulation that finds failures
 ROUND, MOST_ROUNDS = 0.08, 6  # of cross entropy: share of the budget, and how many
+LEAST_ROUND = 100
+SURE = 0.5  # variation of a round from which a bound is taken where the event was not reached
 ELITE = 0.2  # –, of a round's samples, to which the next mixture is fitted
 FIRST_ROUND = 0.3  # of the samples around failures, that fit the mixture of the others
 DEEPEST = 7  # levels of a tenth that a budget is planned for: 1e-7
@@ -315,9 +317,9 @@ def _around(
 def _cross_entropy(problem: Inputs, seed: int, budget: int, rng: np.random.Generator) -> Estimate:
     """Importance sampling whose mixture goes down by rounds; what moves as a whole is drawn anew for every sample."""
     around = problem.dimension - problem.whole
-    size, used, steps = int(ROUND * budget), 0, list[Step]()
+    size, used, steps = max(LEAST_ROUND, int(ROUND * budget)), 0, list[Step]()
     mixture = shifted.Mixture(np.ones(1), np.zeros((1, around)))
-    for _ in range(MOST_ROUNDS):
+    for _ in range(min(MOST_ROUNDS, budget // (2 * size))):
         u, g, ratio = _drawn(problem, mixture, size, rng)
         used += size
         bound = max(0.0, float(np.partition(g, int(ELITE * size))[int(ELITE * size)]))
@@ -339,7 +341,8 @@ def _cross_entropy(problem: Inputs, seed: int, budget: int, rng: np.random.Gener
     failed = g <= 0.0
     values = np.where(failed, ratio, 0.0)
     if not failed.any():
-        last = steps[-1] if steps else Step(nan, 1.0, 0.0, 1.0)
+        sure = [step for step in steps if step.variation < SURE]
+        last = min(sure, key=lambda step: step.probability, default=Step(nan, 1.0, 0.0, 1.0))
         return _incomplete_at(last, tuple(steps), problem, seed, budget)
     probability = float(values.mean())
     variation = float(values.std(ddof=1)) / probability / sqrt(len(values))
