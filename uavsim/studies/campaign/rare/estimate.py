@@ -4,10 +4,13 @@ What is asked decides how:
 
     Watch               alarms of a detector in white noise: importance splitting along time (`splitting`), a pilot and
                         ten independent runs; interval from the ten, Student's t on the logarithm
-    Inputs, up to 30    subset simulation finds failures, importance sampling around them (`shifted`) tells how many;
+    Inputs, up to 20    subset simulation finds failures, importance sampling around them (`shifted`) tells how many;
                         normal interval on the logarithm. Where the two do not agree, or the weights hang on one
                         sample, a second subset simulation takes the place of the second half
     Inputs, more        subset simulation alone
+    Inputs with a whole the number of a flight's noise moves as a whole, and a chain that has a lucky one would keep it:
+                        importance sampling whose mixture goes down by rounds (cross entropy, Rubinstein & Kroese 2004),
+                        the number drawn anew for every sample
 
 The work of one flight is one simulation of the whole input. Splitting simulates parts: they count by their samples over
 those of the whole, and `starts` counts each part as one.
@@ -25,11 +28,20 @@ from uavsim.studies.campaign.rare import shifted, subset
 from uavsim.studies.campaign.rare.splitting import Plan, Run, Splitter, Watch
 
 Floats = NDArray[np.float64]
-Method = Literal["splitting", "subset simulation", "subset simulation and importance sampling"]
+Method = Literal[
+    "splitting",
+    "subset simulation",
+    "subset simulation and importance sampling",
+    "importance sampling by cross entropy",
+]
 
 RUNS = 10  # of splitting
-AIM = 0.97  # of the budget; trials have random lengths
+AIM = 0.94  # of the budget; trials have random lengths, and the last run cannot be mended
 PILOT = 0.45  # of the budget, for the subset simulation that finds failures
+ROUND, MOST_ROUNDS = 0.08, 6  # of cross entropy: share of the budget, and how many
+LEAST_ROUND = 100
+SURE = 0.5  # variation of a round from which a bound is taken where the event was not reached
+ELITE = 0.2  # –, of a round's samples, to which the next mixture is fitted
 FIRST_ROUND = 0.3  # of the samples around failures, that fit the mixture of the others
 DEEPEST = 7  # levels of a tenth that a budget is planned for: 1e-7
 LEAST_BUDGET = 200  # flights' worth
@@ -250,6 +262,8 @@ def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
     first, second = np.random.SeedSequence(seed).spawn(2)
     around = problem.dimension - problem.whole
     finish = 0 < around <= shifted.MOST_INPUTS
+    if problem.whole and 0 < around <= shifted.MOST_BESIDE_NOISE:
+        return _cross_entropy(problem, seed, budget, np.random.default_rng(first))
     share = PILOT if finish else 1.0
     samples = int(share * budget / (1.0 + (1.0 - subset.P0) * DEEPEST))
     found = subset.run(problem.margins, problem.dimension, first, samples, budget, problem.whole)
@@ -259,11 +273,11 @@ def _subset(problem: Inputs, seed: int, budget: int) -> Estimate:
         return _from_subset(found, problem, seed)
     left = budget - found.evaluations
     values, failures = _around(problem, found, left, max(1.0, subset.P0 * samples), np.random.default_rng(second))
-    if not shifted.trusted(values, found.probability, found.variation):
+    if not shifted.trusted(values, found.probability, _between(found)):
         return _from_subset(found, problem, seed, work=budget)
     probability = float(values.mean())
     variation = float(values.std(ddof=1)) / probability / sqrt(len(values))
-    low, high = interval(probability, variation)
+    low, high = interval(probability, variation, _factor(values))
     return Estimate(
         probability=probability,
         low=low,
@@ -300,14 +314,80 @@ def _around(
     return values, np.vstack(failures)
 
 
+def _cross_entropy(problem: Inputs, seed: int, budget: int, rng: np.random.Generator) -> Estimate:
+    """Importance sampling whose mixture goes down by rounds; what moves as a whole is drawn anew for every sample."""
+    around = problem.dimension - problem.whole
+    size, used, steps = max(LEAST_ROUND, int(ROUND * budget)), 0, list[Step]()
+    mixture = shifted.Mixture(np.ones(1), np.zeros((1, around)))
+    for _ in range(min(MOST_ROUNDS, budget // (2 * size))):
+        u, g, ratio = _drawn(problem, mixture, size, rng)
+        used += size
+        bound = max(0.0, float(np.partition(g, int(ELITE * size))[int(ELITE * size)]))
+        below = g <= bound
+        weights = ratio[below]
+        if np.isinf(bound) or not below.any():
+            break
+        p = float(weights.sum()) / size
+        before = steps[-1].probability if steps else 1.0
+        variation = float(np.where(below, ratio, 0.0).std(ddof=1)) / p / sqrt(size)
+        steps.append(Step(bound, p, variation, p / before))
+        if below.all():
+            break
+        many = float(weights.sum() ** 2 / (weights @ weights))
+        mixture = shifted.mirrored(shifted.fit(u[below][:, :around], weights, many, rng))
+        if bound == 0.0:
+            break
+    u, g, ratio = _drawn(problem, mixture, budget - used, rng)
+    failed = g <= 0.0
+    values = np.where(failed, ratio, 0.0)
+    if not failed.any():
+        sure = [step for step in steps if step.variation < SURE]
+        last = min(sure, key=lambda step: step.probability, default=Step(nan, 1.0, 0.0, 1.0))
+        return _incomplete_at(last, tuple(steps), problem, seed, budget)
+    probability = float(values.mean())
+    variation = float(values.std(ddof=1)) / probability / sqrt(len(values))
+    low, high = interval(probability, variation, _factor(values))
+    return Estimate(
+        probability=probability,
+        low=low,
+        high=high,
+        variation=variation,
+        method="importance sampling by cross entropy",
+        work=float(budget),
+        starts=budget,
+        seed=seed,
+        steps=tuple(steps),
+        failures=_most_likely(u[failed], around),
+        names=problem.names,
+    )
+
+
+def _drawn(
+    problem: Inputs, mixture: shifted.Mixture, n: int, rng: np.random.Generator
+) -> tuple[Floats, Floats, Floats]:
+    """Inputs from a mixture, their margins, and their weights."""
+    u = np.hstack([mixture.draw(n, rng), rng.standard_normal((n, problem.whole))])
+    g = np.asarray(problem.margins(u), np.float64)
+    return u, np.where(np.isnan(g), inf, g), mixture.ratio(u[:, : mixture.centres.shape[1]])
+
+
+def _factor(values: Floats) -> float:
+    """Student's quantile for as many samples as the weights are worth."""
+    from scipy.special import stdtrit
+
+    many = float(values.sum() ** 2 / (values @ values))
+    return float(stdtrit(max(1.0, many - 1.0), 0.5 + 0.5 * CONFIDENCE))
+
+
 def _from_subset(found: subset.Subset, problem: Inputs, seed: int, work: int | None = None) -> Estimate:
-    low, high = interval(found.probability, found.variation)
+    variation = _between(found)
+    low, high = interval(found.probability, variation)
     used = found.evaluations if work is None else work
     return Estimate(
         probability=found.probability,
         low=low,
         high=high,
-        variation=found.variation,
+        variation=variation,
         method="subset simulation",
         work=float(used),
         starts=used,
@@ -318,17 +398,26 @@ def _from_subset(found: subset.Subset, problem: Inputs, seed: int, work: int | N
     )
 
 
+def _between(found: subset.Subset) -> float:
+    """Coefficient of variation between those of levels that are independent and that go together."""
+    return sqrt(found.variation * sum(level.variation for level in found.levels))
+
+
 def _incomplete(found: subset.Subset, problem: Inputs, seed: int) -> Estimate:
     steps = _levels(found)
     last = steps[-1] if steps else Step(nan, 1.0, 0.0, 1.0)
+    return _incomplete_at(last, steps, problem, seed, found.evaluations)
+
+
+def _incomplete_at(last: Step, steps: tuple[Step, ...], problem: Inputs, seed: int, used: int) -> Estimate:
     return Estimate(
         probability=0.0,
         low=0.0,
         high=interval(last.probability, last.variation)[1],
         variation=inf,
-        method="subset simulation",
-        work=float(found.evaluations),
-        starts=found.evaluations,
+        method="importance sampling by cross entropy" if problem.whole else "subset simulation",
+        work=float(used),
+        starts=used,
         seed=seed,
         steps=steps,
         failures=np.empty((0, problem.dimension)),

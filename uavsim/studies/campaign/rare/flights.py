@@ -30,7 +30,7 @@ from uavsim import dispersions
 from uavsim.scenario import Scenario
 from uavsim.score import MISSED_AFTER
 from uavsim.score_keys import NUMBERS
-from uavsim.studies.campaign.flown import Flown, fly_position
+from uavsim.studies.campaign.flown import fly_position
 from uavsim.studies.campaign.keep import Keep
 from uavsim.studies.campaign.plan import Points
 from uavsim.studies.campaign.rare.estimate import Estimate, Inputs
@@ -43,6 +43,7 @@ Fly = Callable[[Floats, Sequence[int]], Sequence[Row]]
 
 INDICES = 2**31  # of flights under a seed
 OUTCOMES = ("crashed", "missed_launch")
+UNFLYABLE = "unflyable"  # outcome of what is drawn and cannot be flown
 NEAREST = 1e-9  # the margin of a flight without the event is above 0
 
 _BOUND = re.compile(r"\s*([a-z0-9_.]+)\s*(<=|>=)\s*(\S+)\s*")
@@ -78,6 +79,8 @@ class Event:
             return self.bound - value if self.above else value - self.bound
         if row["outcome"] == self.text:
             return 0.0
+        if row["outcome"] == UNFLYABLE:
+            return nan
         if self.text == "crashed":
             return max(NEAREST, float(row.get("flight.lowest_altitude_after_exit", nan)) - self.ground)
         exit_time, detected = (float(row.get(k, nan)) for k in ("flight.rail_exit_time", "launch.detected_time"))
@@ -163,17 +166,30 @@ def failing(scenario: Scenario, found: Estimate) -> list[dict[str, Any]]:
     ]
 
 
+def _row(plan: Points, limit: float | None, position: int) -> Row:
+    try:
+        return fly_position(plan, Keep("none"), limit, position).row
+    except ValueError:  # such as air that holds more water than it can
+        return {"outcome": UNFLYABLE}
+
+
 def flown_by(crew: Crew, scenario: Scenario, limit: float | None = None) -> Fly:
-    """Let a crew fly: see `Fly`. A flight that cannot be flown ends the estimate with the reason."""
+    """Let a crew fly: see `Fly`. What is drawn and cannot be flown is taken for a flight without the event.
+
+    Raises
+    ------
+    ValueError
+        From what is returned: a flight is left unfinished.
+    """
 
     def fly(points: Floats, indices: Sequence[int]) -> list[Row]:
         plan = Points(scenario, tuple(map(tuple, points.tolist())), tuple(indices))
         rows: dict[int, Row] = {}
 
-        def done(results: list[tuple[int, Flown]]) -> None:
-            rows.update((i, flown.row) for i, flown in results)
+        def done(results: list[tuple[int, Row]]) -> None:
+            rows.update(results)
 
-        left = crew.each(partial(fly_position, plan, Keep("none"), limit), range(plan.size), done=done, limit=limit)
+        left = crew.each(partial(_row, plan, limit), range(plan.size), done=done, limit=limit)
         if left:
             raise ValueError(f"flight with index {indices[left[0].position]} was not flown: {left[0].why}")
         return [rows[i] for i in range(plan.size)]

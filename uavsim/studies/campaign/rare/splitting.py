@@ -451,11 +451,12 @@ class Splitter:
 @lru_cache(maxsize=32)
 def _table(like_push: float, farthest: int) -> Wholes:
     """Distance by m and d: -ln P(at least d of m samples act like a push) over `STEP`, rounded up; last row: far."""
-    from scipy.special import bdtrc
+    from scipy.special import betainc
 
-    m = np.arange(farthest + 2, dtype=np.float64)
-    chance = bdtrc(m[np.newaxis, :] - 1.0, np.maximum(m[:, np.newaxis], 1.0), like_push)
-    chance = np.where(m[np.newaxis, :] <= 0.0, 1.0, chance)
+    m, d = np.ogrid[: farthest + 2, : farthest + 2]
+    chance = np.where(
+        d == 0, 1.0, np.where(d > m, 0.0, betainc(np.maximum(d, 1.0), np.maximum(m - d + 1.0, 1.0), like_push))
+    )
     with np.errstate(divide="ignore"):
         value = -np.log(np.where(chance > 0.0, chance, 1e-300))
     table = np.maximum(1, np.ceil(value / STEP)).astype(np.int64)

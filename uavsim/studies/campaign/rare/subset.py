@@ -17,7 +17,10 @@ Chains cannot see a region of failure in which no seed lies: a margin with sever
 
 Coefficient of variation of one run, with the correlation ρ_j(k) of the chains' indicators at lag k:
 
-    δ_j² = (1 - P_j)/(N P_j) · (1 + γ_j),     γ_j = 2 Σ_k (1 - k·N_c/N) ρ_j(k),       δ² ≈ Σ δ_j²
+    δ_j² = (1 - P_j)/(N P_j) · (1 + γ_j),     γ_j = 2 Σ_k (1 - k·N_c/N) ρ_j(k),       Σ δ_j² ≤ δ² ≤ (Σ δ_j)²
+
+The bounds are those of levels that are independent and that go together. `variation` is the lower one; `estimate` takes
+the geometric mean of both, which was found to hold (docs/rare.md).
 
 Sources: Au & Beck, Prob. Engng Mech. 16 (2001) 263; Papaioannou, Betz, Zwirglmaier & Straub, Prob. Engng Mech. 41
 (2015) 89 (adaptive conditional sampling).
