@@ -153,9 +153,7 @@ def capacity() -> None:
         record = Record(Path(folder), plan)
         spent = []
         for position in range(0, 1000, 5):
-            rows = [
-                (position + i, flown._replace(row={**flown.row, "index": position + i}, trace=None)) for i in range(5)
-            ]
+            rows = [(position + i, flown._replace(row=_row(flown.row, position + i), trace=None)) for i in range(5)]
             started = time.process_time()
             record.keep(rows)
             spent.append(time.process_time() - started)

@@ -9,9 +9,12 @@ import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from uavsim.studies import cluster
+from uavsim.studies.cluster import ClusterError
 from uavsim.studies.engine import Engine, InTurn, Left, TimeUp, engine, processes
 
 
@@ -121,6 +124,31 @@ def test_a_part_that_its_process_dies_of_three_times_is_left_and_the_others_are_
     assert left == [Left(1, "its worker died 3 times")]
     assert done == {0: 2, **{i: 2 * i for i in range(2, 42)}}
     assert 3 <= len(list(tmp_path.iterdir())) <= 4  # once in a bundle, three times by itself
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_who_looks_after_a_worker_is_replaced_when_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a busy machine a new process may not come in time, and its nanny ends: here both are ended at once."""
+    monkeypatch.setattr(cluster, "REPLACING", 0.3)
+    with engine(workers=2) as own:
+        assert isinstance(own, Engine)
+        staff: Any = own.site.workers
+        for nanny in list(staff._cluster.workers.values()):
+            staff._cluster.sync(nanny.close)
+        done: dict[int, int] = {}
+        assert own.each(double, range(20), done=done.update) == []
+        assert done == {i: 2 * i for i in range(20)}
+
+
+def test_without_any_worker_it_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "GIVEN_UP", 0.3)
+    with engine(workers=1) as own:
+        assert isinstance(own, Engine)
+        staff: Any = own.site.workers
+        for nanny in list(staff._cluster.workers.values()):
+            staff._cluster.sync(nanny.close)
+        with pytest.raises(ClusterError, match="no process to fly in could be started for 0.3 s"):
+            own.each(double, range(20), done=lambda _: None)
 
 
 def test_an_error_of_a_part_is_the_callers_and_tells_where_it_was() -> None:

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 PATIENCE = 10.0  # s that a scheduler has to answer
 LOOK = 5.0  # s between two looks how many workers there are
 ENDING = 5.0  # s that processes have to end by themselves
+REPLACING = 10.0  # s that a nanny has to begin a new process, before it is looked at itself
+GIVEN_UP = 300.0  # s without any process
+ENDED = ("closed", "closing", "failed", "stopped", "undefined")
 LARGEST_FILE = 1_000_000  # bytes of a scheduler file
 SILENT = 100  # above every level
 QUIET = {  # of the cluster of this machine
@@ -41,6 +44,7 @@ QUIET = {  # of the cluster of this machine
     "distributed.worker.multiprocessing-method": "spawn",
     "distributed.comm.timeouts.connect": "30s",
     "distributed.admin.tick.limit": "1h",
+    "distributed.deploy.lost-worker-timeout": "1h",  # a busy machine takes its time; we look ourselves
 }
 
 
@@ -116,11 +120,12 @@ def local(workers: int, *, dashboard: bool = False) -> Iterator[Site]:
         with withheld():  # threads and processes that begin here never hear Ctrl-C
             cluster = _cluster(workers, dashboard=dashboard)
         client = Client(cluster, set_as_default=False)
+        staff = _Staff(cluster, workers)
         try:
             if not dashboard:
                 _stop_serving(cluster.scheduler)
                 client.register_plugin(_quiet())
-            yield Site(client, lambda: _alive(cluster), local=True, stop=lambda: _kill(cluster))
+            yield Site(client, staff, local=True, stop=lambda: _kill(cluster))
         finally:
             _end(client, cluster)
 
@@ -146,10 +151,36 @@ def _cluster(workers: int, *, dashboard: bool) -> "LocalCluster":
         ) from error
 
 
-def _alive(cluster: "LocalCluster") -> int:
-    """How many can be given work; not those that have died and are not there again, so that none is blamed twice."""
-    scheduler: Any = cluster.scheduler
-    return max(1, len(scheduler.workers))
+class _Staff:
+    """How many processes can be given work: not those that have died and are not there again.
+
+    So none is blamed for another's death. Each is looked after by a nanny, which begins a new one; where that itself
+    has failed (it does on a machine that is busy enough), there is a new nanny.
+    """
+
+    def __init__(self, cluster: "LocalCluster", wanted: int) -> None:
+        self._cluster: Any = cluster
+        self._wanted = wanted
+        self._whole = self._some = monotonic()  # when all were there, and any
+
+    def __call__(self) -> int:
+        alive, now = len(self._cluster.scheduler.workers), monotonic()
+        if alive >= self._wanted:
+            self._whole = now
+        if alive:
+            self._some = now
+        elif now - self._some > GIVEN_UP:
+            raise ClusterError(f"no process to fly in could be started for {GIVEN_UP:g} s")
+        if now - self._whole > REPLACING:
+            self._whole = now
+            self._cluster.loop.add_callback(self._replace)
+        return max(1, alive)
+
+    def _replace(self) -> None:
+        """Have new nannies in place of those that have ended; by the loop that they live in."""
+        for name in [name for name, nanny in self._cluster.workers.items() if nanny.status.name in ENDED]:
+            del self._cluster.workers[name]
+        self._cluster.scale(self._wanted)
 
 
 def _quiet() -> Any:

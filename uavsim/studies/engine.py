@@ -202,6 +202,7 @@ class Engine:
                 while asked.count < 2:
                     if not asked.count:
                         shift.hand_out()
+                    self.site.workers()  # which looks after them
                     if not shift.under_way:
                         break
                     finished = shift.gather()
