@@ -147,7 +147,7 @@ def test_without_any_worker_it_is_given_up(monkeypatch: pytest.MonkeyPatch) -> N
         staff: Any = own.site.workers
         for nanny in list(staff._cluster.workers.values()):
             staff._cluster.sync(nanny.close)
-        with pytest.raises(ClusterError, match="no process to fly in could be started for 0.3 s"):
+        with pytest.raises(ClusterError, match=r"no process to fly in could be started for 0.3 s"):
             own.each(double, range(20), done=lambda _: None)
 
 
