@@ -69,7 +69,6 @@ def uavsim(
       uavsim fly catapult --seed 7
       uavsim fly gusty --seeds 1-50 --out output/gusty-50
       uavsim campaign dispersed --runs 1000 --out output/dispersed
-      uavsim verify dispersed --requirements small-uav --out output/verify
       uavsim sweep catapult --vary air_data.total.noise_scale=0.5,1,2,4 --runs 50
       uavsim sensitivity dispersed --runs 1000
       uavsim verify dispersed --requirements small-uav

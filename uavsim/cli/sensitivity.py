@@ -64,7 +64,7 @@ def sensitivity(
     insecure: Insecure = False,
     as_json: Json = False,
 ) -> None:
-    """Say which dispersion of a scenario drives latency, airspeed error, exit speed and outcome.
+    """Say what drives latency, airspeed error and outcome.
 
     Sobol indices where the flights suffice for them, else Morris screening.
 

@@ -68,7 +68,7 @@ def sweep(
     insecure: Insecure = False,
     as_json: Json = False,
 ) -> None:
-    """Fly a scenario over a grid of assumptions, and say how much of each can be afforded.
+    """Fly a scenario over a grid of assumptions.
 
     Every cell flies the same flights, so that cells differ by what is varied alone.
 

@@ -71,9 +71,9 @@ def verify(
     insecure: Insecure = False,
     as_json: Json = False,
 ) -> None:
-    """Test a scenario's requirements statistically: fly until each is decided, or the flights run out.
+    """Test a scenario's requirements statistically.
 
-    Exit status 0 if all are met, 1 if one is not met or undecided.
+    It flies until each is decided, or the flights run out. Exit status 0 if all are met, 1 if one is not met or undecided.
 
     Example: uavsim verify dispersed --requirements small-uav --out output/verify
 
