@@ -73,7 +73,8 @@ def verify(
 ) -> None:
     """Test a scenario's requirements statistically.
 
-    It flies until each is decided, or the flights run out. Exit status 0 if all are met, 1 if one is not met or undecided.
+    It flies until each is decided, or the flights run out. Exit status 0 if all are met, 1 if one is not met or
+    undecided.
 
     Example: uavsim verify dispersed --requirements small-uav --out output/verify
 

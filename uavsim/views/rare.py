@@ -48,6 +48,9 @@ def summary(found: Found) -> dict[str, Any]:
     return plain(told)  # type: ignore[no-any-return]
 
 
+UNSURE = 0.3  # coefficient of variation above which the interval held the truth in too few of the known cases
+
+
 def save(found: Found, folder: Path, *, plots: bool) -> None:
     """Write `rare.json` and `rare.png` into a folder that is there."""
     write_json(folder / "rare.json", summary(found))
@@ -61,6 +64,10 @@ def headline(found: Found) -> list[str]:
     if e.reached:
         lines.append(f"probability in {found.of}: {e.probability:.3g}, 95 % {e.low:.3g} to {e.high:.3g}")
         lines.append(f"coefficient of variation {100.0 * e.variation:.0f} %")
+        if e.variation > UNSURE:
+            lines.append(
+                "so much variation makes the interval too narrow (it held 85 % of known cases): fly more --runs"
+            )
     else:
         lines.append(f"not reached: probability in {found.of} at most about {e.high:.2g}")
     rate = found.per_hour
