@@ -30,6 +30,12 @@ def instants() -> list[float]:
     return [float(t) for t in np.random.default_rng(14).uniform(0.3, LONGEST, KILLS)]
 
 
+@pytest.mark.parametrize("workers", [1, 2, 4])
+def test_any_number_of_workers(tmp_path: Path, run: Run, whole: bytes, workers: int) -> None:
+    assert run(*ARGUMENTS, "--workers", str(workers), "--out", "here") == 0
+    assert (tmp_path / "here" / "runs.parquet").read_bytes() == whole
+
+
 @pytest.mark.parametrize("who", ["worker", "driver"])
 def test_a_worker_or_the_driver(tmp_path: Path, start: Start, run: Run, whole: bytes, table: Table, who: str) -> None:
     rows = []
