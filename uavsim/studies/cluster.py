@@ -9,6 +9,7 @@ code on all its workers and hand results to its clients; so one that is neither 
 unless the user insists.
 """
 
+import gc
 import ipaddress
 import json
 import logging
@@ -253,12 +254,16 @@ def _reached(address: str, security: "Security | None") -> Iterator[Site]:
             warnings.simplefilter("ignore")  # versions are compared by us
             client = Client(address, security=security, timeout=PATIENCE, set_as_default=False, name="uavsim")
     except (OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
-        raise ClusterError(f"the scheduler {address} does not answer within {PATIENCE:g} s ({_line(error)})") from None
-    try:
-        yield of_client(client)
-    finally:
-        with suppress(Exception):
-            client.close(timeout=ENDING)
+        said = _line(error)
+    else:
+        try:
+            yield of_client(client)
+        finally:
+            with suppress(Exception):
+                client.close(timeout=ENDING)
+        return
+    gc.collect()  # what is left of the client stops its loop as it goes: now, not while another one is begun
+    raise ClusterError(f"the scheduler {address} does not answer within {PATIENCE:g} s ({said})")
 
 
 @contextmanager
