@@ -211,7 +211,7 @@ def test_flights_are_put_against_the_bound(alone: Batch) -> None:
     """Both errors are root mean squares over the same bins; a filter near the bound is within half and twice of it."""
     least = least_error(alone)
     assert least is not None
-    time, allowed = least
+    time, allowed = least.time, least.sd
     found = against_bound(alone)
     assert set(found) <= set(STRETCHES)
     for name, (start, end) in STRETCHES.items():

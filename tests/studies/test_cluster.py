@@ -235,7 +235,7 @@ def test_a_client_of_ones_own_is_used_and_left_open() -> None:
     from distributed import Client
 
     with Client(
-        processes=False, n_workers=1, threads_per_worker=3, dashboard_address=None, set_as_default=False
+        processes=False, n_workers=1, threads_per_worker=3, dashboard_address=":0", set_as_default=False
     ) as own:
         with engine.engine(client=own) as crew:
             found: dict[int, int] = {}
