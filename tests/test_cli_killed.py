@@ -313,7 +313,7 @@ def test_several_that_are_interrupted_keep_what_was_finished(
     assert alive(flying.pid) == []
 
 
-@pytest.mark.parametrize("slow", ["bound_of", "save_batch_plots"])
+@pytest.mark.parametrize("slow", ["bound_of", "save_many_plots"])
 def test_an_interrupt_of_what_follows_keeps_all_flights(
     tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], slow: str
 ) -> None:

@@ -148,13 +148,21 @@ def many(flown: Batch | Many) -> Many:
 
 
 def many_of(flights: Flights) -> Many:
-    """Return what a campaign's folder holds of all flights together."""
+    """Return what a campaign's folder holds of all flights together.
+
+    The first flight that was kept is read: the bound is computed for its readings, and by then the folder may have
+    been renamed.
+    """
+    kept: dict[int, Flight | Path] = {index: flights.folder / FLIGHTS / str(index) for index in flights.kept()}
+    if kept:
+        first = min(kept)
+        kept[first] = flights.flight(first)
     return Many(
         scenario=flights.scenario,
         runs=flights.runs,
         traces=flights.traces,
         complete=flights.complete,
-        kept={index: flights.folder / FLIGHTS / str(index) for index in flights.kept()},
+        kept=kept,
         wall_time=flights.wall_time,
         lost=tuple(flights.plan.index(one.position) for one in flights.left),
         flights=flights.plan.size,
