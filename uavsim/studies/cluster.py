@@ -43,6 +43,7 @@ QUIET = {  # of the cluster of this machine
     "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
     "distributed.worker.multiprocessing-method": "spawn",
+    "distributed.worker.profile.enabled": False,  # it looks at every thread a hundred times a second
     "distributed.comm.timeouts.connect": "30s",
     "distributed.admin.tick.limit": "1h",
     "distributed.deploy.lost-worker-timeout": "1h",  # a busy machine takes its time; we look ourselves

@@ -202,10 +202,11 @@ class Engine:
                 while asked.count < 2:
                     if not asked.count:
                         shift.hand_out()
-                    self.site.workers()  # which looks after them
                     if not shift.under_way:
                         break
                     finished = shift.gather()
+                    if not asked.count and shift.error is None:
+                        shift.hand_out()  # before anything is written: nobody waits for the disk
                     if finished:
                         done(finished)
                     if shift.error is not None:

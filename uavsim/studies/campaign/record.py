@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 RUNS, TRACES, FLIGHTS, ABOUT = "runs.parquet", "traces", "flights", "campaign.json"
 PART = 1000  # rows in a file, which is written anew with each bundle
-TRACES_PART = 100
+TRACES_PART = 20  # of errors over time, which are long
 KEEPING = ".keeping"
 TOLD = 5  # differences between two scenarios that are told
 ENOUGH = 20  # flights that could not be done that are named
@@ -66,7 +66,7 @@ class Record:
         self._keep = keep
         self._parts = -(-plan.size // PART)
         self._rows: dict[int, Part] = {}
-        self._traces: dict[int, dict[int, ErrorTrace]] = {}
+        self._traces: dict[int, Part] = {}
         self._earlier = 0.0 if before is None else before.wall_time
         self._done = np.zeros(plan.size, dtype=bool)
         if before is not None:
@@ -89,55 +89,46 @@ class Record:
     def keep(self, results: Iterable[tuple[int, Flown]]) -> None:
         """Write finished flights: those that are kept, then the rows of all."""
         rows: dict[int, dict[int, dict[str, Any]]] = {}
-        traces = set()
+        traces: dict[int, dict[int, ErrorTrace]] = {}
         try:
             for position, flown in results:
                 index = flown.row["index"]
                 if flown.flight is not None:
                     self.keep_flight(index, flown.flight)
                 if flown.trace is not None:
-                    self._open_traces(position // TRACES_PART)[position] = flown.trace
-                    traces.add(position // TRACES_PART)
+                    traces.setdefault(position // TRACES_PART, {})[position] = flown.trace
                 rows.setdefault(position // PART, {})[position] = flown.row
         finally:
-            for part in traces:
-                self._write_traces(part)
-            for part, new in rows.items():
-                self._write_rows(part, new)
+            for number, some in traces.items():
+                self._write_traces(number, some)
+            for number, new in rows.items():
+                self._write_rows(number, new)
 
     def _write_rows(self, number: int, new: dict[int, dict[str, Any]]) -> None:
-        import pyarrow.parquet as pq
-
-        part = self._open(number).with_rows(new)
-        with whole(self._part(number)) as file:
-            pq.write_table(part.table, file)
-        self._rows[number] = part
+        most = min(PART, self.plan.size - number * PART)
+        self._write(self._rows, number, self._part(number), _table(list(new.values())), tuple(new), most)
         self._done[list(new)] = True
-        if len(part.positions) == min(PART, self.plan.size - number * PART):
-            del self._rows[number]  # it is full
 
-    def _open(self, number: int) -> "Part":
-        """A part that is written; one of an earlier run is read."""
-        if number not in self._rows:
-            path = self._part(number)
-            self._rows[number] = Part.read(path, self.plan) if path.is_file() else Part()
-        return self._rows[number]
+    def _write_traces(self, number: int, new: dict[int, ErrorTrace]) -> None:
+        most = min(TRACES_PART, min(TRACED, self.plan.size) - number * TRACES_PART)
+        path = self._traces_part(number)
+        self._write(self._traces, number, path, _traces_table(list(new.values())), tuple(new), most)
 
-    def _open_traces(self, part: int) -> dict[int, ErrorTrace]:
-        if part not in self._traces:
-            path = self._traces_part(part)
-            found = traces_of(path) if path.is_file() else {}
-            self._traces[part] = {position: found[i] for i, position in _by_index(self.plan, found).items()}
-        return self._traces[part]
-
-    def _write_traces(self, part: int) -> None:
+    def _write(
+        self, parts: dict[int, "Part"], number: int, path: Path, new: "pa.Table", positions: tuple[int, ...], most: int
+    ) -> None:
+        """Write a part with what is new; it is held until it is full. One of an earlier run is read."""
         import pyarrow.parquet as pq
 
-        traces = self._traces[part]
-        with whole(self._traces_part(part)) as file:
-            pq.write_table(_traces_table([traces[position] for position in sorted(traces)]), file)
-        if len(traces) == min(TRACES_PART, min(TRACED, self.plan.size) - part * TRACES_PART):
-            del self._traces[part]
+        part = parts.get(number)
+        if part is None:
+            part = Part.read(path, self.plan) if path.is_file() else Part()
+        part = part.joined(new, positions)
+        with whole(path) as file:
+            pq.write_table(part.table, file)
+        parts[number] = part
+        if len(part.positions) == most:
+            del parts[number]
 
     def _part(self, number: int) -> Path:
         """File of up to `PART` rows: `runs.parquet`, or one in a folder of that name, by position."""
@@ -202,19 +193,18 @@ class Part(NamedTuple):
     table: "pa.Table | None" = None
     positions: tuple[int, ...] = ()
 
-    def with_rows(self, new: Mapping[int, dict[str, Any]]) -> "Part":
+    def joined(self, new: "pa.Table", positions: tuple[int, ...]) -> "Part":
         """The same with more rows, or with others in their place, in the order of the positions."""
         import pyarrow as pa
 
-        tables = [_table(list(new.values()))]
-        positions = [*new]
+        tables, where = [new], [*positions]
         if self.table is not None:
-            stay = [i for i, position in enumerate(self.positions) if position not in new]
+            stay = [i for i, position in enumerate(self.positions) if position not in set(positions)]
             tables.append(self.table if len(stay) == len(self.positions) else self.table.take(stay))
-            positions += [self.positions[i] for i in stay]
-        order = np.argsort(positions, kind="stable")
+            where += [self.positions[i] for i in stay]
+        order = np.argsort(where, kind="stable")
         table = pa.concat_tables(tables, promote_options="permissive").take(order).combine_chunks()
-        return Part(table, tuple(positions[i] for i in order))
+        return Part(table, tuple(where[i] for i in order))
 
     @classmethod
     def read(cls, path: Path, plan: Plan) -> "Part":
