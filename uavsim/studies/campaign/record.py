@@ -15,7 +15,6 @@ that is resumed ends in the same rows.
 import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -110,22 +109,23 @@ class Record:
         self._done[list(new)] = True
 
     def _write_traces(self, number: int, new: dict[int, ErrorTrace]) -> None:
+        for trace in new.values():
+            if trace.course is not None:
+                _write_table(_course_table(trace.course), self._traces_folder / course_name(trace.index))
         most = min(TRACES_PART, min(TRACED, self.plan.size) - number * TRACES_PART)
-        path = self._traces_part(number)
+        path = self._traces_folder / part_name(number)
         self._write(self._traces, number, path, _traces_table(list(new.values())), tuple(new), most)
 
     def _write(
         self, parts: dict[int, "Part"], number: int, path: Path, new: "pa.Table", positions: tuple[int, ...], most: int
     ) -> None:
         """Write a part with what is new; it is held until it is full. One of an earlier run is read."""
-        import pyarrow.parquet as pq
-
         part = parts.get(number)
         if part is None:
             part = Part.read(path, self.plan) if path.is_file() else Part()
         part = part.joined(new, positions)
-        with whole(path) as file:
-            pq.write_table(part.table, file)
+        assert part.table is not None
+        _write_table(part.table, path)
         parts[number] = part
         if len(part.positions) == most:
             del parts[number]
@@ -138,10 +138,11 @@ class Record:
         runs.mkdir(exist_ok=True)
         return runs / part_name(number)
 
-    def _traces_part(self, number: int) -> Path:
+    @property
+    def _traces_folder(self) -> Path:
         folder = self.folder / TRACES
         folder.mkdir(exist_ok=True)
-        return folder / part_name(number)
+        return folder
 
     def keep_flight(self, index: int, flight: Flight) -> None:
         """A flight's folder appears in `flights/` when it is whole."""
@@ -354,6 +355,11 @@ def part_name(number: int) -> str:
     return f"part-{number:06}.parquet"
 
 
+def course_name(index: int) -> str:
+    """Return the name of the file of a flight's true course."""
+    return f"course-{index}.parquet"
+
+
 def _parts_in(folder: Path) -> list[Path]:
     runs = folder / RUNS
     if runs.is_file():
@@ -453,11 +459,34 @@ def _traces_table(found: list[ErrorTrace]) -> "pa.Table":
     several = pa.list_(pa.float64())
     for name in LISTS:
         columns[name] = pa.array([getattr(trace, name) for trace in found], several)
-    courses = [None if trace.course is None else asdict(trace.course) for trace in found]
-    for name in COURSE:
-        columns[f"course.{name}"] = pa.array([None if c is None else c[name] for c in courses], several)
-    columns["course.temperature"] = pa.array([None if c is None else c["temperature"] for c in courses], pa.float64())
     return pa.table(columns)
+
+
+def _course_table(course: Course) -> "pa.Table":
+    import pyarrow as pa
+
+    columns = {name: pa.array(getattr(course, name), pa.float64()) for name in COURSE}
+    return pa.table(columns).replace_schema_metadata({"temperature": repr(float(course.temperature))})
+
+
+def _course_of(path: Path) -> Course | None:
+    import pyarrow.parquet as pq
+
+    if not path.is_file():
+        return None
+    table = pq.ParquetFile(path).read()
+    arrays = {name: table[name].to_numpy() for name in COURSE}
+    return Course(**arrays, temperature=float(table.schema.metadata[b"temperature"]))
+
+
+def _write_table(table: "pa.Table", path: Path) -> None:
+    """Write a table; numbers as they are, for hardly two of them are alike."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    words = [field.name for field in table.schema if pa.types.is_string(field.type)]
+    with whole(path) as file:
+        pq.write_table(table, file, use_dictionary=words or False)
 
 
 def traces_of(path: Path) -> dict[int, ErrorTrace]:
@@ -474,13 +503,10 @@ def traces_of(path: Path) -> dict[int, ErrorTrace]:
     found = {}
     try:
         for row in pq.ParquetFile(path).read().to_pylist():
-            course = None
-            if row["course.temperature"] is not None:
-                arrays = {name: _array(row[f"course.{name}"]) for name in COURSE}
-                course = Course(**arrays, temperature=row["course.temperature"])
+            course = _course_of(path.with_name(course_name(row["index"])))
             lists = {name: _array(row[name]) for name in LISTS}
             found[row["index"]] = ErrorTrace(row["seed"], **lists, course=course, index=row["index"])
-    except (OSError, KeyError, TypeError, pa.ArrowException) as error:
+    except (OSError, KeyError, TypeError, ValueError, pa.ArrowException) as error:
         raise ValueError(f"{path}: is damaged ({' '.join(str(error).split())[:100]})") from None
     return found
 
