@@ -262,13 +262,13 @@ def test_a_flight_that_kills_its_process_is_reported_with_the_command_that_flies
     class Losing(InTurn):
         def each(self, work: Any, given: Any, *, done: Any, limit: float | None = None) -> list[Left]:
             done([(position, work(given[position])) for position in (3, 0)])
-            return [Left(position, "its worker died 3 times") for position in (1, 2)]
+            return [Left(position, "its worker died, 3 times") for position in (1, 2)]
 
     monkeypatch.setattr(engine, "engine", lambda **_: nullcontext(Losing()))
     assert run("fly", "catapult", *EXPECTED, "--seeds", "1-3,9", "--out", "here") == 1
     changes = " ".join(f"--set '{c}'" if "[" in c else f"--set {c}" for c in (*CHANGES, "expect=timeout"))
     assert capsys.readouterr().err == (
-        "unfinished: seed 2-3: its worker died 3 times; what is left is flown by: "
+        "unfinished: seed 2-3: its worker died, 3 times; what is left is flown by: "
         f"uavsim fly catapult {changes} --seeds 2-3\n"
     )
     assert kept(tmp_path / "here")["seed"].tolist() == [1, 9]

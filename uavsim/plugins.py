@@ -201,6 +201,12 @@ def loaded() -> tuple[str, ...]:
     return tuple(_loaded)
 
 
+def digests() -> tuple[tuple[str, str], ...]:
+    """Return the same names, each with the SHA-256 of the file that was imported; of a module it is empty."""
+    of_files = {str(Path(path).expanduser().resolve()): digest for path, digest in _files.values()}
+    return tuple((name, of_files.get(name, "")) for name in _loaded)
+
+
 def _is_file(name: str) -> bool:
     return name.endswith(".py") or "/" in name
 

@@ -527,7 +527,7 @@ def _with_plugins(s: Scenario) -> Scenario:
         s = replace(s, **{what: replace(group, options=check_options(what, kind.options, group.options))})
         if was is not None and not was.is_(now := source_of(what, kind)):
             raise SettingError(
-                f"{key}: was flown with {was}, and here is {now}; take [[plugins]] out of its scenario.toml to fly it "
+                f"{key}: was flown with {was}, and here is {now}; take [[plugins]] out of its scenario to fly it "
                 "with this one",
                 key,
                 "plugins",

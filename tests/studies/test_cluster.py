@@ -8,9 +8,11 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import pytest
@@ -215,7 +217,7 @@ def test_a_worker_that_is_not_like_us_is_refused_and_both_are_named(
 
 
 def test_a_worker_without_a_plug_in_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engine, "loaded", lambda: ("/nowhere/mine.py",))
+    monkeypatch.setattr(engine, "digests", lambda: (("/nowhere/mine.py", "0" * 64),))
     with begun(tmp_path, 1) as there:
         _until(there)
         says = r"lacks a plug-in: --plugin '/nowhere/mine.py': there is no such file"
@@ -276,6 +278,63 @@ def test_a_scheduler_file_that_is_none_is_one_line(tmp_path: Path, text: str) ->
     with pytest.raises(ClusterError) as caught, cluster.remote(Remote(str(tmp_path / "scheduler.json"))):
         pass
     assert "\n" not in str(caught.value)
+
+
+def test_what_answers_and_is_no_scheduler_is_one_line() -> None:
+    """A web server, or a proxy, on the port."""
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen(8)
+
+        def serve() -> None:
+            with suppress(OSError):
+                while True:
+                    there, _ = server.accept()
+                    there.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+                    there.close()
+
+        Thread(target=serve, daemon=True).start()
+        where = Remote(f"tcp://127.0.0.1:{server.getsockname()[1]}")
+        with pytest.raises(ClusterError, match="does not answer within") as caught, cluster.remote(where):
+            pass
+    assert "\n" not in str(caught.value)
+
+
+MINE = """
+from uavsim.plugins import detector
+@detector("mine-of-workers", level="f", unit="m/s²")
+class Mine:
+    def __init__(self, rate, settings=None): self.reset()
+    def step(self, t, fx, fy, fz): return False
+    def reset(self): pass
+"""
+ASKING = """
+import sys
+from uavsim import plugins
+from uavsim.studies.cluster import Remote
+from uavsim.studies.engine import engine
+
+def told(_):
+    from uavsim import plugins
+    return dict(plugins.digests())[sys.argv[1]]
+
+plugins.load([sys.argv[1]])
+found = {}
+with engine(scheduler=Remote(sys.argv[2])) as crew:
+    crew.each(told, [0], done=found.update)
+print(found[0])
+"""
+
+
+def test_a_plug_in_that_was_changed_is_taken_anew_by_a_worker_that_lives_on(tmp_path: Path) -> None:
+    mine = tmp_path / "mine_of_workers.py"
+    with begun(tmp_path, 1) as there:
+        _until(there)
+        for text in (MINE, f"{MINE}# another\n"):
+            mine.write_text(text)
+            code = ASKING.replace("sys.argv[1]", repr(str(mine))).replace("sys.argv[2]", repr(there.address))
+            asked = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+            assert asked.stdout.strip() == sha256(text.encode()).hexdigest()
 
 
 def test_a_scheduler_file_names_its_address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -95,6 +95,8 @@ class Means:
                 if self.dashboard:
                     link = crew.site.client.dashboard_link  # type: ignore[attr-defined]
                     typer.echo(f"dashboard: {link}", err=True)
+                if there is not None and not crew.site.client.nthreads():  # type: ignore[attr-defined]
+                    typer.echo(f"Note: {there.address} has no workers yet; waiting for some", err=True)
                 yield crew
         except ClusterError as error:
             raise WrongInputError(str(error)) from None
@@ -183,7 +185,8 @@ def say_unfinished(flights: "Flights", *, end: bool = True) -> None:
         return
     for why in dict.fromkeys(one.why for one in flights.left):
         indices = ranges(flights.plan.index(one.position) for one in flights.left if one.why == why)
-        typer.echo(f"unfinished: flight {_brief(indices)}: {visible(why)}; --resume flies it again", err=True)
+        flown = "flight" if indices.isdigit() else "flights"
+        typer.echo(f"unfinished: {flown} {_brief(indices)}: {visible(why)}; --resume tries again", err=True)
     if end:
         leave(well=False)
 

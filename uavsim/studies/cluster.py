@@ -9,7 +9,7 @@ code on all its workers and hand results to its clients; so one that is neither 
 unless the user insists.
 """
 
-import gc
+import asyncio
 import ipaddress
 import json
 import logging
@@ -17,13 +17,16 @@ import os
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from multiprocessing import process
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
+from uavsim.files import reason
 from uavsim.interrupts import ignore, withheld
 
 if TYPE_CHECKING:
@@ -118,6 +121,8 @@ def local(workers: int, *, dashboard: bool = False) -> Iterator[Site]:
     import dask
     from distributed import Client
 
+    if getattr(process.current_process(), "_inheriting", False):
+        os._exit(1)  # the main script, run anew by a process of ours: without its guard it would begin more of them
     settings = {key: value for key, value in QUIET.items() if not (dashboard and "http.routes" in key)}
     with dask.config.set({**settings, "temporary-directory": tempfile.gettempdir()}), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of ports in use, and of what tornado closes late
@@ -152,7 +157,7 @@ def _cluster(workers: int, *, dashboard: bool) -> "LocalCluster":
         raise ClusterError(
             f"no process could be started to fly in ({_line(error)}); each of them runs the main script anew: that "
             "needs to be a file whose work is below `if __name__ == '__main__':`"
-        ) from error
+        ) from None
 
 
 class _Staff:
@@ -252,21 +257,39 @@ def remote(where: Remote) -> Iterator[Site]:
 def _reached(address: str, security: "Security | None") -> Iterator[Site]:
     from distributed import Client
 
+    with ThreadPoolExecutor(1) as apart:  # a notebook has a loop of its own here
+        problem = apart.submit(asyncio.run, _asked(address, security)).result()
+    if problem:
+        raise ClusterError(f"the scheduler {address} does not answer within {PATIENCE:g} s ({problem})")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # versions are compared by us
+        client = Client(address, security=security, timeout=PATIENCE, set_as_default=False, name="uavsim")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # versions are compared by us
-            client = Client(address, security=security, timeout=PATIENCE, set_as_default=False, name="uavsim")
-    except (OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
-        said = _line(error)
-    else:
-        try:
-            yield of_client(client)
-        finally:
-            with suppress(Exception):
-                client.close(timeout=ENDING)
-        return
-    gc.collect()  # what is left of the client stops its loop as it goes: now, not while another one is begun
-    raise ClusterError(f"the scheduler {address} does not answer within {PATIENCE:g} s ({said})")
+        yield of_client(client)
+    finally:
+        with suppress(Exception):
+            client.close(timeout=ENDING)
+
+
+async def _asked(address: str, security: "Security | None") -> str:
+    """Ask a scheduler who it is; return what went wrong, in words, or nothing. What is no scheduler may answer, too."""
+    import dask
+    from distributed.core import rpc
+
+    given = None if security is None else security.get_connection_args("client")
+    there = None
+    try:
+        with dask.config.set({"distributed.comm.timeouts.connect": PATIENCE}):
+            there = rpc(address, connection_args=given)
+            told = await asyncio.wait_for(there.identity(), PATIENCE)
+            return "" if told.get("type", "").endswith("Scheduler") else "it is no scheduler"
+    except MemoryError:  # what came back was read as the length of a message
+        return "it is no scheduler"
+    except Exception as error:  # noqa: BLE001 (whatever comes back over the line)
+        return _line(error)
+    finally:
+        if there is not None:
+            await there.close_rpc()
 
 
 @contextmanager
@@ -331,8 +354,10 @@ def _of_file(path: str) -> str:
         with Path(path).open(encoding="utf-8") as file:
             told = json.loads(file.read(LARGEST_FILE))
         address = told["address"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ClusterError(f"the scheduler file {path}: {_line(error)}") from None
+    except OSError as error:
+        raise ClusterError(f"the scheduler file {path}: {reason(error)}") from None
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise ClusterError(f"the scheduler file {path}: holds no address of a scheduler") from None
     if not isinstance(address, str):
         raise ClusterError(f"the scheduler file {path}: its address is no text")
     return address

@@ -23,7 +23,7 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 from uavsim.interrupts import Interrupts
-from uavsim.plugins import PluginError, load, loaded
+from uavsim.plugins import PluginError, digests, load
 from uavsim.studies.cluster import ClusterError, Remote, Site, local, of_client, remote
 from uavsim.studies.identity import differences, identity
 
@@ -77,9 +77,9 @@ class Crew(Protocol):
 
 
 class Setup(NamedTuple):
-    """What a worker needs before it works: plug-ins by name, and who it has to be."""
+    """What a worker needs before it works: plug-ins by name and SHA-256 of their files, and who it has to be."""
 
-    plugins: tuple[str, ...]
+    plugins: tuple[tuple[str, str], ...]
     identity: tuple[tuple[str, str], ...]
 
 
@@ -116,6 +116,10 @@ def engine(
     ClusterError
         One line: there are no workers, or they are not like us.
     """
+    if workers is not None and not (isinstance(workers, int) and workers >= 0):
+        raise ValueError(f"workers = {workers!r}: must be a whole number of at least 0")
+    if client is not None and not all(hasattr(client, name) for name in ("submit", "nthreads", "run")):
+        raise ValueError(f"client = {client!r}: must be a distributed.Client")
     if workers == 0 and client is None and scheduler is None:
         yield InTurn()
         return
@@ -148,7 +152,7 @@ class Engine:
 
     def __init__(self, site: Site) -> None:
         self.site = site
-        self._setup = Setup(loaded(), tuple(identity().items()))
+        self._setup = Setup(digests(), tuple(identity().items()))
 
     def check(self) -> None:
         """Refuse workers that have other versions, plug-ins or processors than we; ours are not asked."""
@@ -230,6 +234,7 @@ class _Shift(Generic[A, R]):
         self._cost = BUNDLE  # s a part; unknown, so the first bundles have one
         self._ended: queue.SimpleQueue[Future[Answer]] = queue.SimpleQueue()
         self.under_way: dict[Future[Answer], tuple[int, ...]] = {}
+        self._begun: dict[Future[Answer], float] = {}
         self.left: list[Left] = []
         self.error: Exception | None = None
 
@@ -259,6 +264,7 @@ class _Shift(Generic[A, R]):
         with _blamed():
             future = self._crew.site.client.submit(self._task, parts, pure=False, retries=0)
         self.under_way[future] = positions
+        self._begun[future] = time.monotonic()
         future.add_done_callback(self._ended.put)
 
     def gather(self) -> list[tuple[int, R]]:
@@ -272,18 +278,18 @@ class _Shift(Generic[A, R]):
             raise ClusterError("the scheduler is no more")
         finished: list[tuple[int, R]] = []
         for future in ended:
-            positions = self.under_way.pop(future)
-            finished += self._answers(future, positions)
+            positions, lasted = self.under_way.pop(future), time.monotonic() - self._begun.pop(future)
+            finished += self._answers(future, positions, lasted)
             future.release()
         return finished
 
-    def _answers(self, future: "Future[Answer]", positions: tuple[int, ...]) -> list[tuple[int, R]]:
+    def _answers(self, future: "Future[Answer]", positions: tuple[int, ...], lasted: float) -> list[tuple[int, R]]:
         from distributed import KilledWorker
 
         try:
             answer = future.result()
         except KilledWorker as killed:
-            self._bury(positions, getattr(killed, "allowed_failures", 0) + 1)
+            self._bury(positions, getattr(killed, "allowed_failures", 0) + 1, lasted)
             return []
         except (OSError, TimeoutError) as error:
             raise ClusterError(f"the scheduler is no more ({_words(error)})") from None
@@ -303,13 +309,16 @@ class _Shift(Generic[A, R]):
                 self.error = result
         return finished
 
-    def _bury(self, positions: tuple[int, ...], deaths: int) -> None:
-        """A worker has died of these, or beside them."""
+    def _bury(self, positions: tuple[int, ...], deaths: int, lasted: float) -> None:
+        """A worker has died of these, or beside them, or was ended as one of them took too long."""
+        longest = None if self._limit is None else PATIENCE * self._limit
         alone = len(positions) == 1
         for position in positions:
             self._died[position] = self._died.get(position, 0) + (deaths if alone else 0)
             if self._died[position] >= LIVES:
-                self.left.append(Left(position, f"its worker died {self._died[position]} times"))
+                hung = longest is not None and lasted >= longest
+                what = f"it took longer than {longest:g} s" if hung else "its worker died"
+                self.left.append(Left(position, f"{what}, {self._died[position]} times"))
             else:
                 self._again.append(position)
 
@@ -371,10 +380,14 @@ def _greet(setup: Setup) -> str:
     if different:
         return f"is not like this machine: {'; '.join(different)}"
     try:
-        load(setup.plugins)
+        load(name for name, _ in setup.plugins)
     except PluginError as error:
         return f"lacks a plug-in: {error}"
-    return ""
+    here = dict(digests())
+    other = next((name for name, digest in setup.plugins if here.get(name) != digest), None)
+    return (
+        "" if other is None else f"has another --plugin {other}: that of an earlier run, or another file; begin it anew"
+    )
 
 
 _WORK: dict[str, Any] = {}

@@ -182,6 +182,39 @@ def test_a_damaged_part_is_one_line(tmp_path: Path, flown: Results) -> None:
         frame(tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda rows: rows.assign(index=[10**9, 0, 1]), "index 1000000000 of seed 1 is no flight"),
+        (lambda rows: rows.assign(index=[-1, 0, 1]), "index -1 of seed 1 is no flight"),
+        (lambda rows: rows.assign(seed=77), "index 0 of seed 77 is no flight"),
+        (lambda rows: rows.assign(index=["a", "b", "c"]), "are no whole numbers"),
+        (lambda rows: rows.drop(columns="index"), "has no column 'index'"),
+        (lambda rows: rows.drop(columns="outcome"), "has no column 'outcome'"),
+        (lambda rows: pd.concat([rows, rows]), "is in it twice"),
+    ],
+)
+def test_rows_of_another_campaign_are_not_taken_up(tmp_path: Path, change: Any, says: str) -> None:
+    plan = Random(SHORT, 3)
+    fly_into(tmp_path, plan)
+    change(frame(tmp_path)).to_parquet(tmp_path / "runs.parquet", index=False)
+    with pytest.raises(ValueError, match=r"runs\.parquet: is damaged") as caught:
+        taken_up(tmp_path, plan)
+    assert says in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["flights", "traces", "runs.parquet", "campaign.json"])
+def test_nothing_is_written_through_a_link(tmp_path: Path, name: str) -> None:
+    here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
+    here.mkdir()
+    plan = Random(SHORT, 2)
+    fly_into(here, plan, positions=[0], keep=Keep("all"))
+    (here / name).rename(elsewhere)
+    (here / name).symlink_to(elsewhere)
+    with pytest.raises(ValueError, match="is a link"):
+        taken_up(here, plan)
+
+
 # -- plans -------------------------------------------------------------------------------------------------------------
 
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 SAMPLINGS = ("random", "latin-hypercube", "sobol")
 SLOWEST = 5e-3  # s a step of a plant, with the slowest plug-in that is let fly
 LEAST_LIMIT = 600.0  # s
+TELLING = 30.0  # s between two times at which the record says how far it is
 
 Progress = Callable[[int, int, Mapping[str, int]], None]
 """Called with the number of finished flights, of all, and how those of this run ended."""
@@ -152,8 +153,8 @@ def campaign(
     ClusterError
         The workers cannot be used.
     """
-    if runs < 1:
-        raise ValueError(f"runs = {runs}: must be at least 1")
+    if not isinstance(runs, int) or runs < 1:
+        raise ValueError(f"runs = {runs!r}: must be a whole number of at least 1")
     plan = sampled(given_scenario(scenario, seed=seed, overrides=overrides), runs, sampling)
     rule = keep_of(keep, NUMBERS)
     holder = TemporaryDirectory(prefix="uavsim-")
@@ -261,17 +262,21 @@ def fly_plan(
     limit = limit_of(plan) if limit is None else limit
     wanted = record.missing if positions is None else sorted(set(record.missing).intersection(positions))
     outcomes: Counter[str] = Counter()
-
-    def done(results: list[tuple[int, Flown]]) -> None:
-        record.keep([(wanted[i], flown) for i, flown in results])
-        outcomes.update(flown.row["outcome"] for _, flown in results)
-        if progress is not None:
-            progress(record.finished, plan.size, outcomes)
+    told = [started]  # when the record last said how far it is
 
     def describe(left: Sequence[Left]) -> tuple[bool, float]:
         complete, spent = record.finished == plan.size, time.monotonic() - started
         record.describe(complete=complete, wall_time=spent, left=left)
         return complete, spent
+
+    def done(results: list[tuple[int, Flown]]) -> None:
+        record.keep([(wanted[i], flown) for i, flown in results])
+        outcomes.update(flown.row["outcome"] for _, flown in results)
+        if time.monotonic() - told[0] > TELLING:
+            told[0] = time.monotonic()
+            describe(())
+        if progress is not None:
+            progress(record.finished, plan.size, outcomes)
 
     try:
         not_done = crew.each(partial(fly_position, plan, keep, limit), wanted, done=done, limit=limit)

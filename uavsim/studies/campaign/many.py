@@ -90,7 +90,7 @@ class Many:
         """Return `filtered`, `raw` or `nees` of all traces, shape (traces, bins); NaN after a flight's end."""
         found = np.full((len(self.traces), self.error_time.size), np.nan)
         for row, trace in zip(found, self.traces, strict=True):
-            values = getattr(trace, kind)
+            values = getattr(trace, kind)[: row.size]
             row[: values.size] = values
         return found
 

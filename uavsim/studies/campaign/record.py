@@ -24,6 +24,7 @@ from sensors.data_files import parse_json
 from uavsim import inputs
 from uavsim.files import whole, write_json
 from uavsim.flight import Flight
+from uavsim.folders import OURS
 from uavsim.scenario import Scenario
 from uavsim.studies.airspeed_flights import Course
 from uavsim.studies.campaign.flown import TRACED, WHOLE, ErrorTrace, Flown
@@ -212,9 +213,7 @@ class Part(NamedTuple):
         """Read what an earlier run has written."""
         import pyarrow.parquet as pq
 
-        indices = read_columns(path, ["index"])["index"].tolist()
-        positions = _by_index(plan, indices)
-        return cls(pq.ParquetFile(path).read(), tuple(positions[index] for index in indices))
+        return cls(pq.ParquetFile(path).read(), tuple(_positions(path, plan)))
 
 
 # -- an earlier run ----------------------------------------------------------------------------------------------------
@@ -275,15 +274,17 @@ def taken_up(folder: Path, plan: Plan) -> Before:
     ValueError
         Another scenario, seed, number or version; one line that says what differs.
     """
+    link = next((entry.name for entry in sorted(folder.iterdir()) if entry.name in OURS and entry.is_symlink()), None)
+    if link is not None:
+        raise ValueError(f"{folder / link}: is a link; nothing is written through one")
     there, told = plan_in(folder), read_about(folder)
     different = _plan_differences(there, plan) + _identity_differences(told["identity"])
     if different:
         more = f" and {len(different) - TOLD} more" if len(different) > TOLD else ""
         raise ValueError(f"{folder}: --resume: is another campaign: {'; '.join(different[:TOLD])}{more}")
-    done: list[int] = []
-    for path in _parts_in(folder):
-        indices = read_columns(path, ["index"])["index"]
-        done += _by_index(plan, indices.tolist()).values()
+    done = [position for path in _parts_in(folder) for position in _positions(path, plan)]
+    if len(set(done)) != len(done):
+        raise ValueError(f"{folder / RUNS}: is damaged (a flight is in it twice)")
     wall_time = told.get("wall_time")
     return Before(done, float(wall_time) if isinstance(wall_time, int | float) else 0.0)
 
@@ -407,6 +408,36 @@ def traces(folder: Path) -> list[ErrorTrace]:
     """Read errors over time, in the order of the flights."""
     paths = sorted((folder / TRACES).glob("part-*.parquet")) if (folder / TRACES).is_dir() else []
     return [found for path in paths for found in traces_of(path).values()]
+
+
+def _positions(path: Path, plan: Plan) -> list[int]:
+    """Positions of the rows of a part.
+
+    Raises
+    ------
+    ValueError
+        It is damaged, or its rows are not those of the plan.
+    """
+    rows = read_columns(path, ["index", "seed", "outcome"])
+    missing = {"index", "seed"} - set(rows.columns)
+    if path.parent.name != TRACES and "outcome" not in rows.columns:
+        missing |= {"outcome"}
+    if missing:
+        raise ValueError(f"{path}: is damaged (it has no column {sorted(missing)[0]!r})")
+    if not all(pd_kind == "i" for pd_kind in (rows["index"].dtype.kind, rows["seed"].dtype.kind)):
+        raise ValueError(f"{path}: is damaged (index and seed are no whole numbers)")
+    positions = _by_index(plan, rows["index"].tolist())
+    found = []
+    for index, seed in zip(rows["index"].tolist(), rows["seed"].tolist(), strict=True):
+        position = positions.get(index)
+        if position is None or seed != _seed(plan, position):
+            raise ValueError(f"{path}: is damaged (index {index} of seed {seed} is no flight of this campaign)")
+        found.append(position)
+    return found
+
+
+def _seed(plan: Plan, position: int) -> int:
+    return plan.seeds[position] if isinstance(plan, Seeds) else plan.scenario.seed
 
 
 def _by_index(plan: Plan, indices: Iterable[int]) -> dict[int, int]:
