@@ -6,12 +6,13 @@ import pytest
 from scipy.stats import binom
 
 from uavsim.flight import Flight
-from uavsim.scenario import Scenario
+from uavsim.scenario import Scenario, load_scenario
 from uavsim.studies.airspeed_flights import bound, bound_of, course, together
 from uavsim.studies.campaign.causes import cause_of, causes
 from uavsim.studies.campaign.convergence import running_quantile, running_share, sizes
 from uavsim.studies.campaign.differences import differences, holm
 from uavsim.studies.campaign.envelopes import envelopes, mean_square_band
+from uavsim.studies.campaign.flown import ErrorTrace
 from uavsim.studies.campaign.far import far_traces, reach
 from uavsim.studies.campaign.many import Many
 from uavsim.studies.campaign.resampled_bound import RESAMPLES, ResampledBound
@@ -187,3 +188,10 @@ def test_resampling_leaves_the_bound_and_equal_courses_have_no_spread(catapult: 
     _, same = bound_of(catapult, together([short, short]), ResampledBound)
     reference = same.sd()
     assert np.array(same.resampled) == pytest.approx(np.tile(reference[same.at], (RESAMPLES, 1)).T, rel=1e-9)
+
+
+def test_a_trace_of_a_rig_has_no_errors_and_something_in_its_nees() -> None:
+    """One that is never told an airspeed: both are as long as the errors are, which may be nothing."""
+    traces = [ErrorTrace(1, np.empty(0), np.empty(0), np.full(26, np.nan))]
+    flown = Many(load_scenario("launch-curve"), pd.DataFrame({"index": [0]}), traces)
+    assert flown.matrix("nees").shape == flown.matrix("filtered").shape == (1, 0)

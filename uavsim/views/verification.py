@@ -11,6 +11,7 @@ write control characters.
 
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring  # written, never read
 
@@ -90,8 +91,16 @@ def print_verified(found: Verified) -> None:
         head,
         table,
         "",
-        *(_plan(one, seen.confidence) for one in seen.judgements if one.verdict == "undecided"),
+        *(_wrapped(_plan(one, seen.confidence)) for one in seen.judgements if one.verdict == "undecided"),
     )
+
+
+WIDTH = 80  # characters of a terminal that is not told
+
+
+def _wrapped(text: str) -> str:
+    """In lines of the table's width."""
+    return "\n".join(wrap(text, WIDTH, subsequent_indent="  ", break_long_words=False))
 
 
 def _summary(seen: Verification) -> str:
