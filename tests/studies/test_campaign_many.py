@@ -12,8 +12,8 @@ from uavsim.studies.campaign.causes import cause_of, causes
 from uavsim.studies.campaign.convergence import running_quantile, running_share, sizes
 from uavsim.studies.campaign.differences import differences, holm
 from uavsim.studies.campaign.envelopes import envelopes, mean_square_band
-from uavsim.studies.campaign.flown import ErrorTrace
 from uavsim.studies.campaign.far import far_traces, reach
+from uavsim.studies.campaign.flown import ErrorTrace
 from uavsim.studies.campaign.many import Many
 from uavsim.studies.campaign.resampled_bound import RESAMPLES, ResampledBound
 from uavsim.studies.intervals import share_interval
