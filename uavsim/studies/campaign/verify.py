@@ -16,7 +16,7 @@ from uavsim.requirements import OUTCOME, Requirement
 from uavsim.scenario import Scenario
 from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan, given_scenario, keep_later
 from uavsim.studies.campaign.evidence import HOUR
-from uavsim.studies.campaign.keep import Keep, keep_of
+from uavsim.studies.campaign.keep import Keep
 from uavsim.studies.campaign.outlook import Outlook, outlook
 from uavsim.studies.campaign.plan import Plan, Random
 from uavsim.studies.campaign.record import ABOUT, Record, frame, taken_up
@@ -125,7 +125,7 @@ def verify(
     ):
         known = resume and (place.folder / ABOUT).is_file()
         record = Record(place.folder, plan, keep="none", before=taken_up(place.folder, plan) if known else None)
-        return fly_until_decided(record, crew, keep_of("none", ()), confidence, progress=progress)
+        return fly_until_decided(record, crew, NOTHING, confidence, progress=progress)
 
 
 def asking(scenario: Scenario, requirements: "Sequence[Requirement] | str | Path | None" = None) -> Scenario:
