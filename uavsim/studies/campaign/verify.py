@@ -16,7 +16,7 @@ from uavsim.requirements import OUTCOME, Requirement
 from uavsim.scenario import Scenario
 from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan, given_scenario, keep_later
 from uavsim.studies.campaign.evidence import HOUR
-from uavsim.studies.campaign.keep import Keep
+from uavsim.studies.campaign.keep import NOTHING, Keep
 from uavsim.studies.campaign.outlook import Outlook, outlook
 from uavsim.studies.campaign.plan import Plan, Random
 from uavsim.studies.campaign.record import ABOUT, Record, frame, taken_up
