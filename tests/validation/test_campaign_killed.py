@@ -13,21 +13,38 @@ from pathlib import Path
 import numpy as np
 import pytest
 from studies.test_cluster import begun
-from test_cli_campaign import RUNS, SHORT, Run, ended, run, start, whole
-from test_cli_killed import Start, alive, wait_until, workers_of
+from test_cli_campaign import SHORT, Run, ended, run, start
+from test_cli_killed import CHANGES, Start, alive, wait_until, workers_of
 
-__all__ = ["run", "start", "whole"]  # fixtures
+from uavsim.scenario import load_scenario
+from uavsim.studies.campaign.campaign import fly_plan
+from uavsim.studies.campaign.keep import NOTHING
+from uavsim.studies.campaign.plan import Random
+from uavsim.studies.campaign.record import Record
+from uavsim.studies.engine import InTurn
+
+__all__ = ["run", "start"]  # fixtures
 
 pytestmark = pytest.mark.slow
 
 KILLS = 20
-LONGEST = 9.0  # s, about as long as it takes
+RUNS = 100
+SHORTEST, LONGEST = 0.8, 7.0  # s; about as long as it takes on two cores
 ARGUMENTS = ("campaign", "catapult", *SHORT, "--runs", str(RUNS))
 Table = Callable[[str], None]
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """Rows of flights that were flown one after the other in this process."""
+    folder = tmp_path_factory.mktemp("whole")
+    plan = Random(load_scenario("catapult", overrides=[*CHANGES, "expect=timeout"]), RUNS)
+    fly_plan(Record(folder, plan), InTurn(), NOTHING)
+    return (folder / "runs.parquet").read_bytes()
+
+
 def instants() -> list[float]:
-    return [float(t) for t in np.random.default_rng(14).uniform(0.3, LONGEST, KILLS)]
+    return [float(t) for t in np.random.default_rng(14).uniform(SHORTEST, LONGEST, KILLS)]
 
 
 @pytest.mark.parametrize("workers", [1, 2, 4])
