@@ -122,8 +122,9 @@ def test_a_campaign_that_is_taken_up_ends_in_the_same_bytes(tmp_path: Path, monk
         (tmp_path / name).mkdir()
     fly_into(tmp_path / "whole", plan)
     fly_into(tmp_path / "goes", Random(SHORT, 2), positions=[1])
-    for positions in ([3], None):
+    for positions, finished in (([3], 1), (None, 2)):
         before = taken_up(tmp_path / "goes", plan)
+        assert before.outcomes == {"timeout": finished}
         fly_into(tmp_path / "goes", plan, positions=positions, before=before)
     for part in sorted((tmp_path / "whole" / "runs.parquet").iterdir()):
         assert (tmp_path / "goes" / "runs.parquet" / part.name).read_bytes() == part.read_bytes()

@@ -1,7 +1,6 @@
 """Fly a plan into its folder, and look at what is there."""
 
 import time
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -32,7 +31,7 @@ LEAST_LIMIT = 600.0  # s
 TELLING = 30.0  # s between two times at which the record says how far it is
 
 Progress = Callable[[int, int, Mapping[str, int]], None]
-"""Called with the number of finished flights, of all, and how those of this run ended."""
+"""Called with the number of finished flights, of all, and how those that are finished ended."""
 
 
 @dataclass(frozen=True)
@@ -261,7 +260,6 @@ def fly_plan(
     plan, started = record.plan, time.monotonic()
     limit = limit_of(plan) if limit is None else limit
     wanted = record.missing if positions is None else sorted(set(record.missing).intersection(positions))
-    outcomes: Counter[str] = Counter()
     told = [started]  # when the record last said how far it is
 
     def describe(left: Sequence[Left]) -> tuple[bool, float]:
@@ -271,12 +269,11 @@ def fly_plan(
 
     def done(results: list[tuple[int, Flown]]) -> None:
         record.keep([(wanted[i], flown) for i, flown in results])
-        outcomes.update(flown.row["outcome"] for _, flown in results)
         if time.monotonic() - told[0] > TELLING:
             told[0] = time.monotonic()
             describe(())
         if progress is not None:
-            progress(record.finished, plan.size, outcomes)
+            progress(record.finished, plan.size, record.outcomes)
 
     try:
         not_done = crew.each(partial(fly_position, plan, keep, limit), wanted, done=done, limit=limit)

@@ -13,6 +13,7 @@ that is resumed ends in the same rows.
 """
 
 import shutil
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -59,6 +60,11 @@ class Record:
         The rule by which flights are kept, as it is written.
     before
         What an earlier run has left there, see `taken_up`.
+
+    Attributes
+    ----------
+    outcomes : Counter
+        How many flights that are written ended in which way.
     """
 
     def __init__(self, folder: Path, plan: Plan, *, keep: str = "", before: "Before | None" = None) -> None:
@@ -68,6 +74,7 @@ class Record:
         self._rows: dict[int, Part] = {}
         self._traces: dict[int, Part] = {}
         self._earlier = 0.0 if before is None else before.wall_time
+        self.outcomes: Counter[str] = Counter() if before is None else Counter(before.outcomes)
         self._done = np.zeros(plan.size, dtype=bool)
         if before is not None:
             self._done[before.done] = True
@@ -107,6 +114,7 @@ class Record:
     def _write_rows(self, number: int, new: dict[int, dict[str, Any]]) -> None:
         most = min(PART, self.plan.size - number * PART)
         self._write(self._rows, number, self._part(number), _table(list(new.values())), tuple(new), most)
+        self.outcomes.update(row["outcome"] for position, row in new.items() if not self._done[position])
         self._done[list(new)] = True
 
     def _write_traces(self, number: int, new: dict[int, ErrorTrace]) -> None:
@@ -220,10 +228,11 @@ class Part(NamedTuple):
 
 
 class Before(NamedTuple):
-    """What an earlier run has left: positions that are done, and how long it took, s."""
+    """What an earlier run has left: positions that are done, how long it took, s, and how many ended in which way."""
 
     done: list[int]
     wall_time: float
+    outcomes: Mapping[str, int]
 
 
 def read_about(folder: Path) -> dict[str, Any]:
@@ -286,7 +295,8 @@ def taken_up(folder: Path, plan: Plan) -> Before:
     if len(set(done)) != len(done):
         raise ValueError(f"{folder / RUNS}: is damaged (a flight is in it twice)")
     wall_time = told.get("wall_time")
-    return Before(done, float(wall_time) if isinstance(wall_time, int | float) else 0.0)
+    outcomes = Counter(map(str, frame(folder, ["outcome"])["outcome"])) if done else Counter[str]()
+    return Before(done, float(wall_time) if isinstance(wall_time, int | float) else 0.0, outcomes)
 
 
 def _plan_differences(there: Plan, here: Plan) -> list[str]:
