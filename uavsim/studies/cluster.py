@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 PATIENCE = 10.0  # s that a scheduler has to answer
 LOOK = 5.0  # s between two looks how many workers there are
 ENDING = 5.0  # s that processes have to end by themselves
+BEGINNINGS = 3
 REPLACING = 10.0  # s that a nanny has to begin a new process, before it is looked at itself
 GIVEN_UP = 300.0  # s without any process
 ENDED = ("closed", "closing", "failed", "stopped", "undefined")
@@ -133,31 +134,40 @@ def local(workers: int, *, dashboard: bool = False) -> Iterator[Site]:
         try:
             if not dashboard:
                 _stop_serving(cluster.scheduler)
-                client.register_plugin(_quiet())
+                with suppress(OSError, RuntimeError):  # one that has died just now; its successor is told, too
+                    client.register_plugin(_quiet())
             yield Site(client, staff, local=True, stop=lambda: _kill(cluster))
         finally:
             _end(client, cluster)
 
 
 def _cluster(workers: int, *, dashboard: bool) -> "LocalCluster":
+    """Begin processes; one that dies as it begins, for once, is no reason to give up."""
+    said = ""
+    for _ in range(BEGINNINGS):
+        try:
+            return _begun(workers, dashboard=dashboard)
+        except (RuntimeError, OSError, TimeoutError) as error:
+            said = _line(error)
+    raise ClusterError(
+        f"no process could be started to fly in ({said}); each of them runs the main script anew: that needs to be a "
+        "file whose work is below `if __name__ == '__main__':`"
+    )
+
+
+def _begun(workers: int, *, dashboard: bool) -> "LocalCluster":
     from distributed import LocalCluster
 
-    try:
-        return LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            host="127.0.0.1",
-            security=True,
-            dashboard_address="127.0.0.1:0",
-            scheduler_kwargs={"dashboard": dashboard},
-            memory_limit=None,
-            silence_logs=SILENT,
-        )
-    except (RuntimeError, OSError, TimeoutError) as error:
-        raise ClusterError(
-            f"no process could be started to fly in ({_line(error)}); each of them runs the main script anew: that "
-            "needs to be a file whose work is below `if __name__ == '__main__':`"
-        ) from None
+    return LocalCluster(
+        n_workers=workers,
+        threads_per_worker=1,
+        host="127.0.0.1",
+        security=True,
+        dashboard_address="127.0.0.1:0",
+        scheduler_kwargs={"dashboard": dashboard},
+        memory_limit=None,
+        silence_logs=SILENT,
+    )
 
 
 class _Staff:
