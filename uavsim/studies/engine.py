@@ -245,14 +245,11 @@ class _Shift(Generic[A, R]):
             if self._fresh:
                 size = self._size()
                 self._submit(tuple(self._fresh.popleft() for _ in range(size)))
-            elif not self._suspected() or self._died[self._again[0]] < LIVES - 1:
+            elif not self.under_way or self._died[self._again[0]] < LIVES - 1:
                 self._submit((self._again.popleft(),))
             else:
                 break  # its last life it has by itself, so that no other one is blamed for it, or it for another
             free -= 1
-
-    def _suspected(self) -> bool:
-        return bool(self.under_way)
 
     def _size(self) -> int:
         """Parts in the next bundle: seconds of work, but towards the end few enough that all have some."""
