@@ -260,10 +260,10 @@ def run(
     settings: EstimatorSettings = SETTINGS,
     noise: NoiseModel | None = None,
     tare: tuple[float, float] | None = COVERED,
-    wings: float | None = 0.5,
+    wings: float | None = 0.2,
     recognised: float = LAUNCH + LATENCY,
 ) -> Flown:
-    """Feed the filter; `wings` is how long after the launch they are commanded out, s."""
+    """Feed the filter; `wings` is how long after the push they are commanded out, s."""
     flight = readings.flight
     if noise is None:
         noise = replace(
@@ -290,7 +290,7 @@ def run(
             if not launched and force[0] >= recognised:
                 launched = True
                 estimator.launched(force[0])
-            if not opened and wings is not None and force[0] >= LAUNCH + wings:
+            if not opened and wings is not None and force[0] >= LAUNCH + flight.push + wings:
                 opened = True
                 estimator.unfolding(force[0])
         e = estimator.step(*row)

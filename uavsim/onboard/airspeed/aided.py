@@ -34,6 +34,8 @@ from math import inf, nan, sqrt
 from uavsim import airdata
 from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
+from uavsim.onboard.airspeed.gust import GRAVITY
+from uavsim.onboard.airspeed.lift import pulled
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
@@ -135,7 +137,7 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
+        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_lift", "_longest", "_noise", "_on_rail",
         "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_stamps",
         "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps", "_sudden", "_t",
         "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance",
@@ -178,6 +180,7 @@ class AidedFilter(Estimator):
         self.time = self._t = -inf
         self._tare, self._push_variance, self._steady_from = 0.0, 0.0, inf
         self._u = self._w = 0.0
+        self._lift = GRAVITY
         self.energy = self._begin(-inf)
 
     # -- readings ----------------------------------------------------------------------------------------------------
@@ -441,7 +444,7 @@ class AidedFilter(Estimator):
         )
         ports = self.ports
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
-        ports.seen_static = p_static, at, self._gained.lift()
+        ports.seen_static = p_static, at, self._lift
         ports.seen_total = tared, nis_total
         return nis_total, nis_static
 
@@ -469,6 +472,13 @@ class AidedFilter(Estimator):
                 self.ports.torn = True
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, to)
+        lift = self._gained.lift()
+        if lift == lift:
+            self._lift = lift
+        if self.time > self._steady_from:
+            turned, doubt = pulled(self._lift, v)
+            gained -= turned * dt
+            variance += doubt * dt
         self.time, self._u, self._w = to, u, w
         return gained, variance
 
@@ -483,7 +493,7 @@ class AidedFilter(Estimator):
         nis = energy.static(reading, self._static_variance, density * energy.v * ahead)
         ports.misses = 0 if energy.taken else ports.misses + 1
         if self.time > self._steady_from:
-            ports.seen_static = reading, at, self._gained.lift()
+            ports.seen_static = reading, at, self._lift
         elif ports.misses >= PERSISTENT:  # these are no spikes, and it is too early for a fault: the filter is wrong
             energy.widen_static(energy.innovation * energy.innovation)
             energy.static(reading, self._static_variance, 0.0)

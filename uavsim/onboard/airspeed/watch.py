@@ -25,6 +25,7 @@ from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
+from uavsim.onboard.airspeed.lift import Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
@@ -108,7 +109,7 @@ class TotalWatch:
 
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_p", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
+        "_last", "_lost", "_near", "_p", "_pull", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
         "port",
     )  # fmt: skip
 
@@ -132,6 +133,7 @@ class TotalWatch:
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
         self._near, self._taught = 0, 0.0
+        self._pull = Pull()
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
     def take(
@@ -176,7 +178,8 @@ class TotalWatch:
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn) == 0.0
+        tilted = self._pull.add(lift, dt)
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn, tilted) == 0.0
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
