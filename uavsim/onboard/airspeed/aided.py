@@ -137,22 +137,22 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_lift", "_longest", "_noise", "_on_rail",
-        "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_stamps",
-        "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps", "_sudden", "_t",
-        "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance",
-        "_u", "_unfolding", "_w", "_waiting", "energy", "flying", "news", "ports", "time",
+        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
+        "_onset", "_plain", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_variance", "_settings",
+        "_stamps", "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps",
+        "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes",
+        "_total_variance", "_u", "_unfolding", "_w", "_waiting", "energy", "flying", "news", "ports", "time",
+        "_lift",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
-        settings = replace(settings, aided=with_offset(settings.aided, noise.accelerometer_offset_sd))
-        aided = settings.aided
+        aided = self._plain = settings.aided
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
-        self._flight_force = MOST_FLIGHT_FORCE if aided.flight_force is None else aided.flight_force
-        self._flight_force += FARTHEST * noise.accelerometer_offset_sd
+        self._believe_offset(noise.accelerometer_offset_sd)
+        self._gained.end_at(*noise.accelerometer_range)
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._push, self._force = MembranePush(noise, self._gained, self._rest), 0.0
         self._rows: deque[Row] = deque(maxlen=ROWS)
@@ -173,7 +173,7 @@ class AidedFilter(Estimator):
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
         self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
-        self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)
+        self.ports = Ports(self._settings.aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
         self.flying = self._apart = False
         self._steps, self._read = 0, -inf
@@ -260,6 +260,21 @@ class AidedFilter(Estimator):
             self._fall_back(t, "clock")
 
     # -- the filter's life -------------------------------------------------------------------------------------------
+
+    def rested(self, offset: tuple[float, float, float], sd: tuple[float, float, float]) -> None:
+        """Know the offset of f_x and f_z by what was found on the rail; see `Estimator`."""
+        noise = self._noise = replace(self._noise, accelerometer_offset_sd=sd[0], lift_offset_sd=sd[2])
+        self._believe_offset(sd[0])
+        low, high = noise.accelerometer_range
+        self._gained.end_at(low - offset[0], high - offset[0])
+        self.ports.believe(noise, self._settings.aided)
+
+    def _believe_offset(self, sd: float) -> None:
+        """Let b hold an offset of f_x of this standard deviation, m/s², beside the angle of attack."""
+        plain = self._plain
+        self._settings = replace(self._settings, aided=with_offset(plain, sd))
+        most = MOST_FLIGHT_FORCE if plain.flight_force is None else plain.flight_force
+        self._flight_force = most + FARTHEST * sd
 
     def launched(self, t: float) -> None:
         """Start the filter before a launch that has been recognised at `t`, and bring it up to date."""
