@@ -273,6 +273,8 @@ def run(
             accelerometer_sd=flight.force_sd,
             accelerometer_rate=flight.rate,
             head_rate=flight.head_rate,
+            total_step=flight.total_step,
+            static_step=flight.static_step,
         )
     estimator = AidedFilter(settings, noise, tare)
     feel, tidy, out = estimator.accelerometer, False, []

@@ -34,15 +34,18 @@ class Onset:
     ----------
     wind : float
         The wind that is taken for a headwind, m/s; 0 for none, or once it is known which it was.
+    sd : float
+        Its standard deviation, m/s; infinite where nothing was read.
     settled : bool
         Whether total pressures are taken.
     """
 
-    __slots__ = ("_each", "_patience", "_tare_end", "_turning", "_wind_sd", "settled", "wind")
+    __slots__ = ("_each", "_patience", "_tare_end", "_turning", "_wind_sd", "sd", "settled", "wind")
 
     def __init__(self, each: float, tare_end: float, wind_sd: float) -> None:
         self._each, self._tare_end, self._wind_sd = each, tare_end, wind_sd
         self.wind = self._turning = 0.0
+        self.sd = inf
         self.settled, self._patience = False, inf
 
     def look(self, rows: Iterable[Row], end: float, tare: tuple[float, float], density: float) -> float:
@@ -70,6 +73,7 @@ class Onset:
                 each=self._each,
                 density=density,
             )
+        self.sd = sd
         self._turning = turning(self.wind, self._each, density)
         return min(sd, self._wind_sd)
 

@@ -29,6 +29,7 @@ from uavsim.onboard.airspeed.lift import Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
+from uavsim.onboard.repeats import LEAST, apart
 
 Kept = tuple[float, float, float, float, float, float, float]
 """When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
@@ -57,11 +58,9 @@ LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried
 # that goes on leaking would agree with any airspeed at last. By hand; docs/faults.md, "After a flag"
 AGREE_SD = 5.0 / 3.0
 
-# -- sensors of coarse steps -------------------------------------------------------------------------------------------
-
-# equal readings in a row that chance makes while the noise is at least half a step. A longer row on the rail shows a
-# coarser sensor, whose readings say less. By hand; test_a_sensor_of_coarse_steps_may_repeat_itself
-FINE = 6
+# kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
+UNTAKEN = ("jump", "silent", "invalid", "range")
+ASTRAY = ("drift", "leak", "jump")
 
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
 
@@ -79,11 +78,6 @@ BIAS_SD = 0.1  # m/s², of b after the flag, which is taken from the total port'
 LEAST_FLIGHT = 10.0  # m/s, below which no wing flies, and lift says nothing of the angle of attack
 
 
-def apart(usual: int) -> float:
-    """Return how many readings say as much as one, by the longest row of equal ones that a live sensor has given."""
-    return max(1.0, usual / FINE)
-
-
 class TotalWatch:
     """Tests of the total pressure's port.
 
@@ -93,8 +87,8 @@ class TotalWatch:
         What is believed of the air.
     variance, walk : float
         Of a reading's noise, Pa², and random walk of the pair's difference, Pa/√s.
-    usual : int
-        The longest row of equal readings that the live sensor has been seen to give.
+    row, alike : float
+        How often its sensor may repeat a number, and how probable a repetition is (`uavsim.onboard.repeats`).
     offset_sd : float
         Offset of f_x, m/s².
     force_density : float
@@ -118,7 +112,8 @@ class TotalWatch:
         aided: AidedSettings,
         variance: float,
         walk: float,
-        usual: int = 0,
+        row: float = LEAST,
+        alike: float = 0.0,
         offset_sd: float = 0.0,
         force_density: float = 0.0,
     ) -> None:
@@ -127,7 +122,7 @@ class TotalWatch:
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
-        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared, offset_sd)
+        self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
         self.faulty = self._astray = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
@@ -211,27 +206,46 @@ class TotalWatch:
         left = self._jumped * exp(-2.0 * since / self._bias_time) if since > 0.0 else self._jumped
         return self._bias_sd * self._bias_sd + left
 
-    def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
-        """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong."""
+    def flag(self, kind: str, energy: EnergyFilter, now: tuple[float, float], density: float, gust: float) -> None:
+        """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong.
+
+        Parameters
+        ----------
+        kind : str
+        energy : EnergyFilter
+        now : tuple of float
+            The instant at which it stands, s, and ∫ f_x dt, m/s.
+        density, gust : float
+            ρ, kg/m³, and the gusts' density, m/s².
+        """
         test = self.port.frozen
-        if kind == "jump":  # the filter has taken nothing of it
-            self._trusted = self._t, self._u, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
-        elif kind != "frozen":  # it had been wrong for a while before the flag
+        trusted, (t, gained) = self._trusted, now
+        if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
             before = self._sound if kind == "leak" else self._before[0]
             if before is not NOTHING:
-                self._trusted = before
-        then, u, v, vv, p, self._bias, bb = self._trusted
+                trusted = before
+        if kind in UNTAKEN or trusted is NOTHING:  # the filter has taken nothing of it
+            trusted = t, gained, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
+        then, u, v, vv, p, self._bias, bb = trusted
         speed = max(v, 1.0)
-        since, slope = self._t - then, density * speed
+        since, slope = t - then, density * speed
         if kind == "frozen":
-            self.port.back.flag(self._t, test.held, test.held_variance)
+            self.port.back.flag(t, test.held, test.held_variance)
         else:
-            self.port.back.flag(self._t)
-        self.faulty, self._astray = True, kind in ("drift", "leak")
-        v = v + self._u - u - self._bias * since + (energy.p - p) / slope
+            self.port.back.flag(t)
+        self.faulty, self._astray = True, kind in ASTRAY
+        v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
         energy.coast_from(v, vv, self._bias, bb, since)
+        self._p = energy.p
+
+    def flag_in_stroke(self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]) -> None:
+        """Flag a port that has not risen in the stroke: V is what the force gave; pressure and V with their variance."""
+        self.port.back.flag(t, *held)
+        self.faulty = self._astray = True
+        self._bias = 0.0
+        energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
 
     def carry(self, energy: EnergyFilter, dt: float, gained: float, variance: float, density: float) -> None:
@@ -257,7 +271,7 @@ class StaticWatch:
     ----------
     variance, walk : float
         Of a reading's noise, Pa², and random walk of the sensor, Pa/√s.
-    usual : int
+    row, alike : float
         As of `TotalWatch`.
     offset_sd : float
         Offset of f_z, m/s².
@@ -270,9 +284,11 @@ class StaticWatch:
 
     __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty")
 
-    def __init__(self, variance: float, walk: float, usual: int = 0, offset_sd: float = 0.0) -> None:
-        self._variance, self._offset_sd = variance * apart(usual), offset_sd
-        self._back = Readmission(variance, walk, usual)
+    def __init__(
+        self, variance: float, walk: float, row: float = LEAST, alike: float = 0.0, offset_sd: float = 0.0
+    ) -> None:
+        self._variance, self._offset_sd = variance * apart(alike), offset_sd
+        self._back = Readmission(variance, walk, row)
         self._test, self._t, self.faulty = ClimbTest(variance, 0.0, offset_sd), -inf, False
 
     @property
@@ -315,14 +331,14 @@ class StaticWatch:
         evidence = self._test.add(reading, dt, lift, density * GRAVITY)
         return "frozen" if evidence > SHUT else ""
 
-    def flag(self, kind: str, energy: EnergyFilter, density: float, bias: float) -> None:
-        """Flag the port; if it was shut, put the filter to where the climb before that would have led."""
+    def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
+        """Flag the port at `t`, s; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
         self.faulty = True
         if kind != "frozen":
-            self._back.flag(self._t)
+            self._back.flag(t)
             return
-        self._back.flag(self._t, test.held, test.held_variance)
+        self._back.flag(t, test.held, test.held_variance)
         weight, v = density * GRAVITY, max(energy.v, 1.0)
         off = weight * CLIMB_SD
         p = test.held - weight * test.climb_then * test.since
