@@ -34,7 +34,7 @@ from uavsim.onboard.airspeed import (
 )
 from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
 from uavsim.onboard.airspeed.rest_wind import HIDDEN, VISIBLE
-from uavsim.onboard.rail_offset import RailOffset
+from uavsim.onboard.rail_offset import RailOffset, known
 from uavsim.scenario import scenario_of
 from uavsim.studies.cramer_rao import AirspeedBound, Courses, Schedule, Start
 from uavsim.truth import STANDARD_GRAVITY
