@@ -353,7 +353,8 @@ class AidedFilter(Estimator):
             onset.wind = 0.0
             energy.restart(0.0, self._settings.wind_sd**2)
         for channel, kind in broken.items():
-            self._muted[1] = self._muted[1] or channel == "thermometer"
+            if channel == "thermometer":
+                self._muted[1], self._heard[2] = True, -inf
             self.ports.dead_at_rest(t, energy, channel, kind, (0.0, self._settings.wind_sd**2))
         self._stroke.begin(
             () if broken else self._rows,
