@@ -58,7 +58,7 @@ def by_chance(share: float) -> float:
     share : float
         ρ = R/S, the reading's variance over that of the innovation.
     """
-    return 0.5 * share * (1.0 - share)
+    return 0.5 * share * (1.0 - share) * (1.0 + 0.5 * share) / (1.0 + share)
 
 
 class FrozenTest:
@@ -114,7 +114,6 @@ class FrozenTest:
         slope: float,
         gust: float,
         turn: float,
-        tilted: float = 0.0,
     ) -> float:
         """Take a reading; return the evidence.
 
@@ -132,8 +131,6 @@ class FrozenTest:
             Variance that the gust adds to the airspeed in that time, m²/s².
         turn : float
             x = n²/V², 1/m·m/s².
-        tilted : float
-            Variance that b gains in that time by a pull or a turn, (m/s²)².
         """
         noise, bb, bc, cc, pb, pc = self._noise, self._bb, self._bc, self._cc, self._pb, self._pc
         reach = slope * dt
@@ -142,7 +139,7 @@ class FrozenTest:
         new_pb, new_pc = pb - reach * bb - turned * bc, pc - reach * bc - turned * cc
         pp = self._pp - reach * (pb + new_pb) - turned * (pc + new_pc) + slope * slope * gust
         pb, pc = new_pb, new_pc
-        bb += self._bias_density * dt + tilted
+        bb += self._bias_density * dt
         spread = pp + noise + 4.0 * static_variance
         innovation = reading - 2.0 * static - self.pressure
         nis = innovation * innovation / spread

@@ -173,8 +173,8 @@ class TotalWatch:
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
-        tilted = self._pull.add(lift, dt)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn, tilted) == 0.0
+        gust = spread * dt + self._pull.add(lift, dt)
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, gust, turn) == 0.0
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
