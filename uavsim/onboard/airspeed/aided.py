@@ -50,6 +50,7 @@ from uavsim.onboard.airspeed.rail import RailCheck, limits, pause
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import Row
 from uavsim.onboard.airspeed.settings import EstimatorSettings
+from uavsim.onboard.airspeed.shock import Shock
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
 from uavsim.onboard.airspeed.stroke import StrokeTest, most_wind
@@ -149,7 +150,7 @@ class AidedFilter(Estimator):
         "_stamps", "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps",
         "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes",
         "_total_variance", "_u", "_unfolding", "_w", "_waiting", "energy", "flying", "news", "ports", "time",
-        "_base", "_first_climb", "_fresh", "_gated", "_heard", "_lift", "_muted", "_pause", "_push_end", "_rail", "_rest_sd", "_stroke", "_warmth",
+        "_base", "_first_climb", "_fresh", "_gated", "_heard", "_lift", "_muted", "_pause", "_push_end", "_rail", "_rest_sd", "_shock", "_stroke", "_warmth",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -180,6 +181,7 @@ class AidedFilter(Estimator):
         self._total_spikes, self._static_spikes = Spikes(total), Spikes(static)
         self._rail, self._pause = RailCheck(noise, self._tare_end), pause(noise)
         self._stroke, self._push_end, self._first_climb = StrokeTest(), PushEnd(), FirstClimb()
+        self._shock = Shock(noise.accelerometer_sd / sqrt(max(1.0, noise.accelerometer_rate / noise.head_rate)))
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
         self._heard, self._fresh, self._muted = [-inf, -inf, -inf], -inf, [False, False]
         self._gated = inf  # s, from which on pressures alone are valid again after the filter has ended
@@ -468,6 +470,7 @@ class AidedFilter(Estimator):
         self._static_spikes.forget()
         self.ports.begin()
         self._push_end.forget(steady_from)
+        self._shock.forget()
         self._heard, self._fresh, self._muted = [start, start, start], start, [False, False]
         self._stroke.open = self._first_climb.open = False
         self._first_climb.hidden = 0.0
@@ -566,6 +569,7 @@ class AidedFilter(Estimator):
     def _take_both(self, p_total: float, p_static: float, t_total: float, to: float, at: float) -> tuple[float, float]:
         """What `_advance`, `_take_static` and `_take_total` do, at once."""
         energy, density, dt = self.energy, self._air.density, to - self.time
+        self._feel_shock(to)
         if energy.kk > 0.0:
             self._push_variance = energy.know_push()
         gained, variance = self._go(to, dt)
@@ -590,6 +594,16 @@ class AidedFilter(Estimator):
         ports.seen_static = p_static, at, self._lift
         ports.seen_total = tared, nis_total
         return nis_total, nis_static
+
+    def _feel_shock(self, to: float) -> None:
+        """Open b after a step of f_x; name the accelerometer where b has taken it up."""
+        shock, energy, ports = self._shock, self.energy, self.ports
+        size = shock.add(to, self._force, energy.b)
+        if size != 0.0:
+            energy.widen_bias(size * size)
+            ports.total.open_bias(self.time, size * size)
+        elif to > shock.due and shock.offset(energy.b):
+            ports.tell(self._t, "airspeed_fault", "accelerometer", "offset")
 
     def _advance(self, to: float) -> None:
         """Predict to a later time; an earlier one leaves the filter where it is."""

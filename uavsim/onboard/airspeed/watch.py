@@ -200,6 +200,12 @@ class TotalWatch:
         """Be told by which variance, (m/s²)², the push has widened b at `t`, s; b forgets that in its own time."""
         self._jumped, self._jumped_at = self._bias_variance(t) - self._bias_sd**2 + variance, t
 
+    def open_bias(self, t: float, variance: float) -> None:
+        """Be told at `t`, s, that b may have moved by that variance, (m/s²)²."""
+        self.jump(t, variance)
+        self.port.frozen.open_bias(variance)
+        self._taught = 0.0
+
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""
         since = t - self._jumped_at
