@@ -727,6 +727,7 @@ class AidedFilter(Estimator):
         if hidden > 0.0:
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
+        variance += self.ports.between
         share = self._temperature_share * speed / air.temperature
         sd = sqrt(max(variance, 0.0) + share * share)
         total = isentropic(speed, static, air.heat)

@@ -62,6 +62,10 @@ AGREE_SD = 5.0 / 3.0
 UNTAKEN = ("jump", "silent", "invalid", "range")
 ASTRAY = ("drift", "leak", "jump")
 
+# s from the last instant at which a live port was the better explanation to the flag, beyond which an accelerometer that
+# drifts is as good an explanation of a total pressure that stands still in still air. By hand
+SLOWLY = 1.0
+
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
 
 # above it the port is flagged. By hand; docs/faults.md: in a climb 100 of 100 within 0.54 s, in 500 healthy flights
@@ -99,12 +103,14 @@ class TotalWatch:
     port : PortMonitor
     faulty : bool
         Whether the port is flagged.
+    undecided : bool
+        Whether an accelerometer that drifts would explain the same: in still air the airspeed crept away from the force.
     """
 
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
         "_last", "_lost", "_near", "_p", "_pull", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
-        "port",
+        "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -123,7 +129,7 @@ class TotalWatch:
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
-        self.faulty = self._astray = False
+        self.faulty = self._astray = self.undecided = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
@@ -240,6 +246,7 @@ class TotalWatch:
         else:
             self.port.back.flag(t)
         self.faulty, self._astray = True, kind in ASTRAY
+        self.undecided = kind == "frozen" and not self._declared and since > SLOWLY
         v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
@@ -250,7 +257,7 @@ class TotalWatch:
         """Flag a port that has not risen in the stroke: V is what the force gave; pressure and V with their variance."""
         self.port.back.flag(t, *held)
         self.faulty = self._astray = True
-        self._bias = 0.0
+        self.undecided, self._bias = False, 0.0
         energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
 
