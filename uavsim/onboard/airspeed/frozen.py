@@ -90,13 +90,15 @@ class FrozenTest:
         Σ (e²/σ² − 1) of the frozen model since it began, and of how many readings: 0 ± √(2n) if it is true.
     pressure : float
         P less twice the static pressure, Pa, of the healthy model.
+    nis, spread : float
+        ν²/S and S, Pa², of the last reading.
     lost, lost_variance : float
         b + c x at the last reading, what f_x then was off by, m/s², and its variance.
     """
 
     __slots__ = (
         "_b", "_bb", "_bc", "_bias_density", "_c", "_cc", "_declared", "_last", "_noise", "_pb", "_pc", "_pp", "_sums", "count",
-        "evidence", "held", "held_variance", "lost", "lost_variance", "misfit", "pressure",
+        "evidence", "held", "held_variance", "lost", "lost_variance", "misfit", "nis", "pressure", "spread",
     )  # fmt: skip
 
     def __init__(self, variance: float, bias_rate: float, declared: bool, offset_sd: float = 0.0) -> None:
@@ -104,7 +106,7 @@ class FrozenTest:
         self._sums, self._last = NONE, (0.0, 0.0, 0.0)
         self._bias_density = (TURNED * bias_rate if declared else bias_rate) ** 2
         self.evidence = self.misfit = self.pressure = self.held = 0.0
-        self.count = 0
+        self.count, self.nis, self.spread = 0, 1.0, variance
         self._b, self._c, self.lost = 0.0, TURN, 0.0
         self._pp, self._bb, self._cc = 1e12, BIAS_SD * BIAS_SD + offset_sd * offset_sd, TURN_SD * TURN_SD
         self._pb = self._pc = self._bc = 0.0
@@ -167,6 +169,7 @@ class FrozenTest:
         spread = pp + noise + 4.0 * static_variance
         innovation = reading - 2.0 * static - self.pressure
         nis = innovation * innovation / spread
+        self.nis, self.spread = nis, spread
         still, steady = reading - self.held, self.held_variance + noise
         if self._declared:
             said = 0.5 * (log(spread / steady) + nis - still * still / steady)

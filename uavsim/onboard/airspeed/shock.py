@@ -13,6 +13,8 @@ WIDE = 4  # readings of the head, of each mean: 40 ms at 100 Hz
 # m/s² and standard deviations of a step that is looked at. By hand: the motor's start and gusts stay below as a rule,
 # and an offset of less is within what b may do
 SIZE, DEVIATIONS = 1.0, 6.0
+# share of the step, and of the least one, that each mean's readings may differ by: a slope has no two levels. By hand
+LEVEL, NOISE = 0.2, 0.6
 LARGEST = 15.0  # m/s²; a greater one is a push that begins or ends
 WAIT = 1.0  # s until b is looked at
 MOST = 0.6  # of the step, that b must have taken up
@@ -52,7 +54,7 @@ class Shock:
         old, new = row[:WIDE], row[-WIDE:]
         size = (sum(new) - sum(old)) / WIDE
         still = max(max(old) - min(old), max(new) - min(new))
-        if not self._least < abs(size) < LARGEST or still > 0.7 * abs(size):  # a slope has no two levels
+        if not self._least < abs(size) < LARGEST or still > LEVEL * abs(size) + NOISE * self._least:
             return 0.0
         self._bias, self._size, self.due = bias, size, t + WAIT
         return size

@@ -29,6 +29,7 @@ from uavsim.onboard.airspeed.lift import Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
+from uavsim.onboard.airspeed.smooth import LEVEL, SmoothTest
 from uavsim.onboard.repeats import LEAST, apart
 
 Kept = tuple[float, float, float, float, float, float, float]
@@ -50,6 +51,8 @@ GAP = 0.1  # s without a pressure, after which a test begins anew: ten readings 
 # s. It is averaged over the last 10 s, and only while no more than a usual gust is between V and the force, for a leak
 # must not be learnt. In the first 5 s it is learnt in any case. By hand; docs/faults.md, the leaks, holds the check
 SLOW, LEARNT = 10.0, 5.0
+RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
+TURNS = 2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
 LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried on after a leak. By hand, as `UNSEEN`
 
 # -- the way back ------------------------------------------------------------------------------------------------------
@@ -61,6 +64,8 @@ AGREE_SD = 5.0 / 3.0
 # kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
 UNTAKEN = ("jump", "silent", "invalid", "range")
 ASTRAY = ("drift", "leak", "jump")
+# kinds after which it must show the gusts that are declared: a port that is shut and leaks moves, but shows none
+GUSTLESS = ("frozen", "drift", "leak")
 
 # s from the last instant at which a live port was the better explanation to the flag, beyond which an accelerometer that
 # drifts is as good an explanation of a total pressure that stands still in still air. By hand
@@ -109,7 +114,7 @@ class TotalWatch:
 
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_p", "_pull", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
+        "_last", "_lost", "_near", "_p", "_pull", "_rough", "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
         "port", "undecided",
     )  # fmt: skip
 
@@ -129,12 +134,13 @@ class TotalWatch:
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
-        self.faulty = self._astray = self.undecided = False
+        self.faulty = self._astray = self.undecided = self._silent = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
         self._near, self._taught = 0, 0.0
         self._pull = Pull()
+        self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
     def take(
@@ -184,6 +190,12 @@ class TotalWatch:
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
+        if self._declared:
+            smooth = self._smooth.add(reading, dt, test.nis, test.spread, self._pull.size < TURNS)
+            if smooth == 0.0:
+                self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
+            elif smooth > LEVEL:
+                return "leak"
         if self._wanders(v, change - energy.s * dt, test.lost, dt):
             return "leak"
         return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
@@ -210,7 +222,8 @@ class TotalWatch:
         """Be told at `t`, s, that b may have moved by that variance, (m/s²)²."""
         self.jump(t, variance)
         self.port.frozen.open_bias(variance)
-        self._taught = 0.0
+        self._taught = min(self._taught, RELEARNT)
+        self._wandering.forget()
 
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""
@@ -233,7 +246,9 @@ class TotalWatch:
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
-            before = self._sound if kind == "leak" else self._before[0]
+            before = self._before[0]
+            if kind == "leak":
+                before = self._rough if self._smooth.evidence > LEVEL else self._sound
             if before is not NOTHING:
                 trusted = before
         if kind in UNTAKEN or trusted is NOTHING:  # the filter has taken nothing of it
@@ -246,6 +261,8 @@ class TotalWatch:
         else:
             self.port.back.flag(t)
         self.faulty, self._astray = True, kind in ASTRAY
+        self._silent = self._declared and kind in GUSTLESS
+        self._smooth.flag(t)
         self.undecided = kind == "frozen" and not self._declared and since > SLOWLY
         v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
@@ -267,8 +284,11 @@ class TotalWatch:
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
+        lives = not self._silent or self._smooth.lives(t, reading)
         if self._astray:
             spread = min(spread, AGREE_SD * AGREE_SD)
+        if not lives:
+            difference = inf  # a port that shows no gusts agrees with nothing
         if not self.port.back.hear(t, reading, pressure, difference, spread):
             return False
         self.faulty = False
