@@ -100,8 +100,8 @@ ALONE = 0.02
 # -- what is claimed ---------------------------------------------------------------------------------------------------
 
 VALID = 8.0  # σ_V from which on an airspeed is valid: 2 V* of the pressures' law (`paper`)
-# m/s, σ_V up to which an airspeed that coasts is valid, whatever the reason: a flag, silence, NaN, a range's end; beyond it the airspeed hold falls back to a safe
-# throttle. By hand; docs/faults.md says how long that lasts
+# m/s, σ_V up to which an airspeed that coasts is valid, whatever the reason, a flag, silence, NaN, a range's end;
+# beyond it the airspeed hold falls back to a safe throttle. By hand; docs/faults.md says how long that lasts
 COASTED = 2.0
 FRESH = 0.2  # s since a total pressure was taken, up to which the airspeed does not coast. By hand
 MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
@@ -145,12 +145,63 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
-        "_onset", "_plain", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_variance", "_settings",
-        "_stamps", "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps",
-        "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes",
-        "_total_variance", "_u", "_unfolding", "_w", "_waiting", "energy", "flying", "news", "ports", "time",
-        "_base", "_first_climb", "_fresh", "_gated", "_heard", "_lift", "_muted", "_pause", "_push_end", "_rail", "_rest_sd", "_shock", "_stroke", "_warmth",
+        "_air",
+        "_apart",
+        "_base",
+        "_fastest",
+        "_first_climb",
+        "_flight_force",
+        "_force",
+        "_fresh",
+        "_gained",
+        "_gated",
+        "_heard",
+        "_lift",
+        "_longest",
+        "_muted",
+        "_noise",
+        "_on_rail",
+        "_onset",
+        "_pause",
+        "_plain",
+        "_push",
+        "_push_end",
+        "_push_variance",
+        "_rail",
+        "_read",
+        "_rest",
+        "_rest_sd",
+        "_rows",
+        "_scale_variance",
+        "_settings",
+        "_shock",
+        "_stamps",
+        "_static_age",
+        "_static_ends",
+        "_static_spikes",
+        "_static_variance",
+        "_steady_from",
+        "_steps",
+        "_stroke",
+        "_sudden",
+        "_t",
+        "_tare",
+        "_tare_end",
+        "_temperature_share",
+        "_total_age",
+        "_total_ends",
+        "_total_spikes",
+        "_total_variance",
+        "_u",
+        "_unfolding",
+        "_w",
+        "_waiting",
+        "_warmth",
+        "energy",
+        "flying",
+        "news",
+        "ports",
+        "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -602,7 +653,7 @@ class AidedFilter(Estimator):
         if size != 0.0:
             energy.widen_bias(size * size)
             ports.total.open_bias(self.time, size * size)
-        elif to > shock.due and shock.offset(energy.b):
+        elif to > shock.due and shock.offset(energy.b, energy.bb):
             ports.tell(self._t, "airspeed_fault", "accelerometer", "offset")
 
     def _advance(self, to: float) -> None:

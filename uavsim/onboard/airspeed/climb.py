@@ -54,8 +54,22 @@ class ClimbTest:
     """
 
     __slots__ = (
-        "_aa", "_ca", "_cc", "_noise", "_pa", "_pc", "_pp", "a", "c", "climb_then", "evidence", "held",
-        "held_variance", "p", "since", "_pull",
+        "_aa",
+        "_ca",
+        "_cc",
+        "_noise",
+        "_pa",
+        "_pc",
+        "_pp",
+        "_pull",
+        "a",
+        "c",
+        "climb_then",
+        "evidence",
+        "held",
+        "held_variance",
+        "p",
+        "since",
     )  # fmt: skip
 
     def __init__(self, variance: float, static: float, offset_sd: float = 0.0) -> None:

@@ -46,6 +46,7 @@ DOUBT = 0.035  # nats that a reading in still air takes off beside `by_chance`. 
 # S is noise, and it is asked for the less often. By hand; docs/faults.md, blocked-calm, and the still flights of
 # tests/onboard/test_airspeed_manoeuvres.py hold the check
 TOGETHER = 5
+Row = tuple[float, float, float, float, float, float]
 NONE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0)
 # NIS beyond which a healthy model that is ahead doubts its own pressure: three standard deviations, by hand
 SURPRISE = 9.0
@@ -97,8 +98,8 @@ class FrozenTest:
     """
 
     __slots__ = (
-        "_b", "_bb", "_bc", "_bias_density", "_c", "_cc", "_declared", "_last", "_noise", "_pb", "_pc", "_pp", "_sums", "count",
-        "evidence", "held", "held_variance", "lost", "lost_variance", "misfit", "nis", "pressure", "spread",
+        "_b", "_bb", "_bc", "_bias_density", "_c", "_cc", "_declared", "_last", "_noise", "_pb", "_pc", "_pp", "_sums",
+        "count", "evidence", "held", "held_variance", "lost", "lost_variance", "misfit", "nis", "pressure", "spread",
     )  # fmt: skip
 
     def __init__(self, variance: float, bias_rate: float, declared: bool, offset_sd: float = 0.0) -> None:
@@ -113,9 +114,22 @@ class FrozenTest:
         self.held_variance, self.lost_variance = 1e12, self._bb
 
     def open_bias(self, variance: float) -> None:
-        """Know b less well, by that variance, (m/s²)²; what has been said against the port meanwhile is void."""
+        """Know b less well, by that variance, (m/s²)²; in still air, what has been said against the port is void."""
         self._bb += variance
-        self.evidence = 0.0
+        if not self._declared:
+            self.evidence = 0.0
+
+    def _gather(self, row: Row) -> Row | None:
+        """Take what `add` is told, but slope; return the mean of `TOGETHER` readings and what has come between two."""
+        a, b, c, d, e, f, count = self._sums
+        reading, static, gained, dt, gust, turn = row
+        a, b, c, d, e, f, count = a + reading, b + static, c + gained, d + dt, e + gust, f + turn, count + 1
+        if count < TOGETHER:
+            self._sums = a, b, c, d, e, f, count
+            return None
+        share, (x, y, z) = 1.0 / TOGETHER, self._last
+        self._sums, self._last = NONE, (c, d, e)
+        return share * a, share * b, 0.5 * (x + c), 0.5 * (y + d), 0.5 * (z + e), share * f
 
     def add(
         self,
@@ -146,18 +160,10 @@ class FrozenTest:
             x = n²/V², 1/m·m/s².
         """
         if not self._declared:
-            before = self._sums
-            self._sums = sums = (
-                before[0] + reading, before[1] + static, before[2] + gained, before[3] + dt, before[4] + gust,
-                before[5] + turn, before[6] + 1,
-            )  # fmt: skip
-            if sums[6] < TOGETHER:
+            together = self._gather((reading, static, gained, dt, gust, turn))
+            if together is None:
                 return self.evidence
-            self._sums = NONE
-            last, share = self._last, 1.0 / TOGETHER
-            self._last = sums[2], sums[3], sums[4]
-            reading, static, turn = share * sums[0], share * sums[1], share * sums[5]
-            gained, dt, gust = 0.5 * (last[0] + sums[2]), 0.5 * (last[1] + sums[3]), 0.5 * (last[2] + sums[4])
+            reading, static, gained, dt, gust, turn = together
         noise, bb, bc, cc, pb, pc = self._noise, self._bb, self._bc, self._cc, self._pb, self._pc
         reach = slope * dt
         turned = reach * turn

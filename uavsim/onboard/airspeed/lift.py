@@ -18,7 +18,7 @@ DIRECTION_SD = 0.04  # rad, α₀: 2°, the wing's incidence and zero lift and t
 LASTS = 0.5  # s, that an error of c acts with one sign: the pull of a manoeuvre. By hand
 # s over which n − g is averaged; m/s² of it up to which flight is straight: a gust's, and the offset's. By hand
 PULLS, STRAIGHT = 0.3, 0.7
-# m/s², n − g of a gust, up to which f_x is taken as it is: so leaks are not hidden in gusts. A turn at 34° has it. By hand
+# m/s², n − g of a gust, up to which f_x is taken as it is: so leaks are not hidden in gusts. A turn at 34° has it
 GUSTY = 2.0
 SLOWEST = 10.0  # m/s, below which no wing flies, and lift says nothing of the angle of attack
 

@@ -65,8 +65,20 @@ class Ports:
     """
 
     __slots__ = (
-        "_aided", "_air", "_lift", "_noise", "_static_variance", "_total_variance", "misses", "news",
-        "seen_static", "seen_total", "static", "torn", "total", "between",
+        "_aided",
+        "_air",
+        "_lift",
+        "_noise",
+        "_static_variance",
+        "_total_variance",
+        "between",
+        "misses",
+        "news",
+        "seen_static",
+        "seen_total",
+        "static",
+        "torn",
+        "total",
     )  # fmt: skip
 
     def __init__(
@@ -136,9 +148,7 @@ class Ports:
             if kind:
                 self._blame(t, energy, (time, gained), kind)
 
-    def jumped(
-        self, t: float, energy: EnergyFilter, now: tuple[float, float], total: bool, static: bool
-    ) -> None:
+    def jumped(self, t: float, energy: EnergyFilter, now: tuple[float, float], total: bool, static: bool) -> None:
         """Flag the port whose pressure has jumped and stays there; `now` as of `TotalWatch.flag`."""
         if static and not self.static.faulty:
             self._flag_static(t, energy, "jump")
@@ -162,9 +172,7 @@ class Ports:
         elif not self.static.faulty:
             self._flag_static(t, energy, kind)
 
-    def dead_at_rest(
-        self, t: float, energy: EnergyFilter, channel: str, kind: str, speed: tuple[float, float]
-    ) -> None:
+    def dead_at_rest(self, t: float, energy: EnergyFilter, channel: str, kind: str, speed: tuple[float, float]) -> None:
         """Flag a sensor that the rail has shown to be dead; V, m/s, and its variance at the start of the launch."""
         if channel == "total":
             self.total.flag_in_stroke(energy, t, (0.0, inf), speed)

@@ -147,10 +147,8 @@ class RailCheck:
         total.add(t, p_total, t_total > self._total_end)
         static.add(t, p_static, t_static > self._static_end)
         warmth.add(t, temperature, temperature == temperature or t_static > self._static_end)
-        if t_total > self._total_end:
-            self._total_end = t_total
-        if t_static > self._static_end:
-            self._static_end = t_static
+        self._total_end = max(self._total_end, t_total)
+        self._static_end = max(self._static_end, t_static)
         if t <= self._tare_end and -inf < p_total - p_static < inf:
             self._sum += p_total - p_static
             self._count += 1

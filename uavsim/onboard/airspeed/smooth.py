@@ -11,7 +11,7 @@ are held against the innovations ν of the healthy model of `frozen`, of the var
     W = max(0, W + ½ ln(S/S_t) + ½ (ν²/S − e²/S_t))
 
 A leak of 5 s at 32 m/s in gusts of 1 m/s lets the pressure fall by 120 Pa/s. A walk of the density D = (ρV)² 2σ²V/L,
-487 Pa²/s, would do that with a loss of 120²/2D = 15 nats a second, and the gusts that are missing say 5 more. In healthy
+487 Pa²/s, would do that with a loss of 120²/2D = 15 nats a second, and the missing gusts say 5 more. In healthy
 turbulence e² is twice S_t, and W stays at 0.
 """
 
@@ -68,8 +68,7 @@ class SmoothTest:
         self._slope += BETA * error / dt
         size = error * error / self._spread
         self._rough += (size if size < MOST_ROUGH else MOST_ROUGH) - LEAST_ROUGH
-        if self._rough < 0.0:
-            self._rough = 0.0
+        self._rough = max(self._rough, 0.0)
         return self._rough > ROUGH
 
     def add(self, reading: float, dt: float, nis: float, spread: float, straight: bool) -> float:

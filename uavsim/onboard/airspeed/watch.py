@@ -52,7 +52,9 @@ GAP = 0.1  # s without a pressure, after which a test begins anew: ten readings 
 # must not be learnt. In the first 5 s it is learnt in any case. By hand; docs/faults.md, the leaks, holds the check
 SLOW, LEARNT = 10.0, 5.0
 RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
-TURNS = 2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
+TURNS = (
+    2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
+)
 LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried on after a leak. By hand, as `UNSEEN`
 
 # -- the way back ------------------------------------------------------------------------------------------------------
@@ -67,8 +69,8 @@ ASTRAY = ("drift", "leak", "jump")
 # kinds after which it must show the gusts that are declared: a port that is shut and leaks moves, but shows none
 GUSTLESS = ("frozen", "drift", "leak")
 
-# s from the last instant at which a live port was the better explanation to the flag, beyond which an accelerometer that
-# drifts is as good an explanation of a total pressure that stands still in still air. By hand
+# s from the last instant at which a live port was the better explanation to the flag. Beyond it an accelerometer that
+# drifts explains a total pressure that stands still in still air as well. By hand
 SLOWLY = 1.0
 
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
@@ -109,13 +111,13 @@ class TotalWatch:
     faulty : bool
         Whether the port is flagged.
     undecided : bool
-        Whether an accelerometer that drifts would explain the same: in still air the airspeed crept away from the force.
+        Whether an accelerometer that drifts would explain the same: in still air the airspeed crept from the force.
     """
 
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_p", "_pull", "_rough", "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
-        "port", "undecided",
+        "_last", "_lost", "_near", "_p", "_pull", "_rough", "_silent", "_smooth", "_sound", "_still", "_t",
+        "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -270,8 +272,10 @@ class TotalWatch:
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
 
-    def flag_in_stroke(self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]) -> None:
-        """Flag a port that has not risen in the stroke: V is what the force gave; pressure and V with their variance."""
+    def flag_in_stroke(
+        self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
+    ) -> None:
+        """Flag a port that has not risen in the stroke; the pressure in it, and V by the force, with their variance."""
         self.port.back.flag(t, *held)
         self.faulty = self._astray = True
         self.undecided, self._bias = False, 0.0
