@@ -20,9 +20,10 @@ from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.plants.air.dryden import FOOT, LOWEST, deviations, lengths
 from uavsim.plants.air.settings import EnvironmentSettings
 from uavsim.plants.air.weather import at_ground
-from uavsim.plants.air.wind import growth
+from uavsim.plants.air.wind import growth, mean_wind
 from uavsim.scenario import MismatchSettings, Scenario
 
+DECLARED = 0.1  # share of the mean wind that a declared one is off by: a hand anemometer, gusts between its looks
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
 
 
@@ -87,6 +88,7 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
         rail_elevation_sd=radians(scenario.flight_computer.rail_elevation_sd_deg),
         rail_roll=radians(scenario.flight_computer.rail_roll_deg),
         difference_sd=belief.drift * head.difference_sd,
+        covered=scenario.air_data.tare == "covered",
     )
 
 
@@ -107,10 +109,34 @@ def believed_air(scenario: Scenario) -> EstimatorSettings:
     sd, length = turbulence(scenario.environment, height, scenario.launcher.heading_deg)
     shear = belief.gust * growth(scenario.environment, height)
     settings = replace(settings, aided=replace(settings.aided, shear=shear)) if shear > 0.0 else settings
+    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario)))
     sd *= belief.gust
     if not sd > 0.0:
         return settings
     return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length, gust_height=height))
+
+
+def _rail_wind(scenario: Scenario) -> dict[str, float]:
+    """The wind past the aircraft on its rail as it is declared, unless the estimator's settings have one."""
+    environment, launcher, share = scenario.environment, scenario.launcher, scenario.mismatch.wind
+    if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.flies:
+        return {}
+    up = radians(launcher.elevation_deg)
+    height = launcher.height + 0.5 * launcher.stroke * sin(up)
+    north, east = mean_wind(environment, height)
+    turbulent, _ = deviations(environment.turbulence_wind_20ft, height)
+    sd = share * hypot(turbulent, DECLARED * hypot(north, east))
+    if not sd > 0.0:
+        return {}
+    heading = radians(launcher.heading_deg)
+    head = -(north * cos(heading) + east * sin(heading))
+    right = north * sin(heading) - east * cos(heading)
+    return {
+        "rail_wind_along": share * head * cos(up),
+        "rail_wind_side": share * right,
+        "rail_wind_down": share * head * sin(up),
+        "rail_wind_sd": sd,
+    }
 
 
 def _bounded(scenario: Scenario) -> EstimatorSettings:

@@ -93,6 +93,8 @@ class MismatchSettings:
         Factor on the age of a reading of specific force at its time stamp.
     gust : float
         Factor on the standard deviation of the turbulence that the environment declares, and on the mean wind's growth.
+    wind : float
+        Factor on the wind on the rail that the environment declares, and on its standard deviation; 0: none is known.
     humidity : float
         Factor on the share of vapour in the air.
     """
@@ -110,6 +112,7 @@ class MismatchSettings:
     accelerometer_offset: Belief = 1.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     gust: Belief = 1.0
+    wind: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     humidity: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
 
 
