@@ -12,7 +12,7 @@ estimator: this module alone copies them from the one into the other. What no de
 """
 
 from dataclasses import replace
-from math import cos, hypot, radians, sin
+from math import cos, hypot, radians, sin, sqrt
 
 from sensors import HeadKnowledge, Streams, known_of_accelerometer, known_of_head, membranes
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
@@ -23,6 +23,7 @@ from uavsim.plants.air.weather import at_ground
 from uavsim.plants.air.wind import growth, mean_wind
 from uavsim.scenario import MismatchSettings, Scenario
 
+GROWN = 0.3  # share of the mean wind's growth along the path that is not known: place, veer and the aircraft's heading
 DECLARED = 0.1  # share of the mean wind that a declared one is off by: a hand anemometer, gusts between its looks
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
 
@@ -107,8 +108,15 @@ def believed_air(scenario: Scenario) -> EstimatorSettings:
         settings = replace(settings, vapour_fraction=belief.humidity * at_ground(scenario.environment).vapour_fraction)
     height = max(scenario.flight_computer.height, LOWEST * FOOT)
     sd, length = turbulence(scenario.environment, height, scenario.launcher.heading_deg)
-    shear = belief.gust * growth(scenario.environment, height)
-    settings = replace(settings, aided=replace(settings.aided, shear=shear)) if shear > 0.0 else settings
+    grown = growth(scenario.environment, sqrt(height * scenario.launcher.height))
+    if scenario.plant.chosen.flies:
+        settings = replace(settings, aided=replace(settings.aided, launch_height=scenario.launcher.height))
+    if grown > 0.0:
+        angle = radians(scenario.launcher.heading_deg - scenario.environment.wind_from_deg)
+        known = belief.wind * grown * cos(angle)
+        settings = replace(
+            settings, aided=replace(settings.aided, shear=belief.gust * GROWN * grown, shear_along=known)
+        )
     settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario)))
     sd *= belief.gust
     if not sd > 0.0:
@@ -122,7 +130,7 @@ def _rail_wind(scenario: Scenario) -> dict[str, float]:
     if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.flies:
         return {}
     up = radians(launcher.elevation_deg)
-    height = launcher.height + 0.5 * launcher.stroke * sin(up)
+    height = launcher.height + scenario.air_data.position[0] * sin(up)
     north, east = mean_wind(environment, height)
     turbulent, _ = deviations(environment.turbulence_wind_20ft, height)
     sd = share * hypot(turbulent, DECLARED * hypot(north, east))

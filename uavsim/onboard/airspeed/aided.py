@@ -36,12 +36,13 @@ from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.flow_angles import FlowAngles
-from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.interface import NoiseModel, within
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.membrane_push import MembranePush
 from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.onset import ONE_SIDED, Onset
+from uavsim.onboard.airspeed.paper import TRANSONIC
 from uavsim.onboard.airspeed.ports import PERSISTENT, Ports
 from uavsim.onboard.airspeed.rail_wind import AGO, RailWind
 from uavsim.onboard.airspeed.rest_force import RestForce
@@ -100,6 +101,7 @@ VALID = 8.0  # σ_V from which on an airspeed is valid: 2 V* of the pressures' l
 # m/s, σ_V up to which an airspeed without its total port is valid; beyond it the airspeed hold falls back to a safe
 # throttle. By hand; docs/faults.md says how long that lasts
 COASTED = 2.0
+LAW_ENDS = 0.2 * TRANSONIC**2  # V² over 7 R T, beyond which no airspeed is valid: a² = 0.2 · 7 R T
 MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
 
 # -- when the filter has diverged --------------------------------------------------------------------------------------
@@ -140,10 +142,12 @@ class AidedFilter(Estimator):
         "_air",
         "_angles",
         "_apart",
+        "_coldest",
         "_fastest",
         "_flight_force",
         "_force",
         "_gained",
+        "_grown",
         "_head",
         "_longest",
         "_noise",
@@ -164,6 +168,7 @@ class AidedFilter(Estimator):
         "_static_ends",
         "_static_spikes",
         "_static_variance",
+        "_static_within",
         "_steady_from",
         "_steps",
         "_sudden",
@@ -176,12 +181,14 @@ class AidedFilter(Estimator):
         "_total_ends",
         "_total_spikes",
         "_total_variance",
+        "_total_within",
         "_u",
         "_unfolding",
         "_w",
         "_waiting",
         "_warmed",
         "_warmed_share",
+        "_warmest",
         "_wind",
         "_wind_known",
         "_wrong",
@@ -212,12 +219,15 @@ class AidedFilter(Estimator):
         self._warmed_share = 0.5 * noise.thermometer_recovery_sd
         self._on_rail = aided.on_rail
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
+        self._coldest, self._warmest = within(noise.temperature_range, 0.0, LEAST_TEMPERATURE, MOST_TEMPERATURE)
         self._longest = jump(noise.head_rate)
         self._stamps = Stamps(self._longest)
         self._total_ends, self._static_ends = Conversions(self._longest), Conversions(self._longest)
         sd = sqrt(max(self._total_variance, self._static_variance))
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
+        self._total_within = within(noise.total_range, noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._static_within = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
         self._wind, self._angles, self._head = RailWind(aided, noise.head), FlowAngles(aided), noise.head
         self._wind_known = self._wind.declared or self._tare_end == -inf
@@ -232,7 +242,7 @@ class AidedFilter(Estimator):
         self.time = self._t = -inf
         self._tare = self._plain_tare = 0.0
         self._push_variance, self._steady_from = 0.0, inf
-        self._u = self._w = 0.0
+        self._u = self._w = self._grown = 0.0
         self.energy = self._begin(-inf)
 
     # -- readings ----------------------------------------------------------------------------------------------------
@@ -275,7 +285,7 @@ class AidedFilter(Estimator):
     def tidy(self) -> None:
         """Watch the ports by what was read last; the filter still stands where it stood then."""
         try:
-            self.ports.judge(self._t, self.energy, self.time, self._u)
+            self.ports.judge(self._t, self.energy, self.time, self._u + self._grown)
         except (ArithmeticError, ValueError):  # as in `step`
             self._fall_back(self._t, "diverged")
 
@@ -484,9 +494,9 @@ class AidedFilter(Estimator):
             return None
         ports, air, energy = self.ports, self._air, self.energy
         if ports.seen_total is not None or ports.seen_static is not None:
-            ports.judge(self._t, energy, self.time, self._u)
+            ports.judge(self._t, energy, self.time, self._u + self._grown)
         before, self._t = self._t, t
-        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
+        if self._coldest <= temperature <= self._warmest:
             if self._warmed > 0.0:
                 temperature /= 1.0 + 5.0 * self._warmed * energy.v * energy.v / air.heat
             if temperature != air.temperature:
@@ -495,6 +505,12 @@ class AidedFilter(Estimator):
         else:
             temperature = nan
         air.at(energy.p, energy.s)
+        low, high = self._total_within
+        if not low <= p_total <= high:
+            p_total = nan
+        low, high = self._static_within
+        if not low <= p_static <= high:
+            p_static = nan
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
         total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
@@ -588,9 +604,13 @@ class AidedFilter(Estimator):
         u, w = self._gained.at(to)
         gained = u - self._u
         self._force = gained / dt - self._rest.mean
+        if self._air.growth:
+            grown = self._air.growth * (wind.gained(self.energy.v) if wind.on else v) * dt
+            gained += grown
+            self._grown += grown
         variance = self._air.gust * (v if v > SLOWEST else SLOWEST) * dt
         if wind.on:
-            wind.advance(dt, variance)
+            wind.advance(dt, variance, self.energy)
             if self._force > self._on_rail:
                 wind.pushed = True
             elif wind.pushed or to > self._onset.patience:
@@ -724,6 +744,7 @@ class AidedFilter(Estimator):
         ports = self.ports
         valid = (
             VALID * sd <= speed <= self._fastest
+            and speed * speed <= LAW_ENDS * air.heat
             and air.measured
             and (sd < COASTED or not ports.total.faulty)
             and not ports.static.faulty  # without it V and the climb are hardly told apart

@@ -133,3 +133,18 @@ class NoiseModel:
     thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     thermometer_recovery_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     differential: bool = False
+
+
+def within(ends: tuple[float, float], step: float, least: float, most: float) -> tuple[float, float]:
+    """Return between which readings something has been measured: within the part's ends, and plausible.
+
+    Parameters
+    ----------
+    ends : tuple of float
+        Of the part's range; a reading there, or less than half a step away, has been clipped.
+    step : float
+        By which readings are rounded.
+    least, most : float
+        What is plausible at all (`uavsim.onboard.plausible`).
+    """
+    return max(least, ends[0] + 0.5 * step), min(most, ends[1] - 0.5 * step)

@@ -20,12 +20,14 @@ from math import hypot, sqrt
 
 from uavsim.onboard.airspeed.energy import Beside, EnergyFilter
 from uavsim.onboard.airspeed.energy_model import isentropic
+from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.head_errors import HeadErrors
 from uavsim.onboard.airspeed.settings import AidedSettings
 
 SMALL = 0.05  # m/s, of the differences by which the ports' readings are derived
 TURNS = 4  # Gauss-Newton's on the rail, where D bends with both
 CALM = 1.0  # m/s, standard deviation of a wind that nobody declares: Beaufort 1, which a crew calls calm
+GROWTH = 0.28  # dW/W over dh/h near the ground: 1/ln(h/z₀) of the logarithmic law at 1.6 m over short grass
 AGO = 0.25  # s, by which the readings on the rail are older than the filter's start: half of their stretch
 
 
@@ -51,7 +53,21 @@ class RailWind:
         Sine of the sideslip that the rail has been left with.
     """
 
-    __slots__ = ("_beside", "_down", "_head", "_mean", "_sd", "_side", "declared", "on", "pushed", "side")
+    __slots__ = (
+        "_at",
+        "_beside",
+        "_down",
+        "_head",
+        "_height",
+        "_mean",
+        "_sd",
+        "_side",
+        "_start",
+        "declared",
+        "on",
+        "pushed",
+        "side",
+    )
 
     def __init__(self, aided: AidedSettings, head: HeadErrors) -> None:
         self.declared = aided.rail_wind_sd > 0.0
@@ -63,6 +79,8 @@ class RailWind:
         )
         self.on = self.pushed = False
         self.side = 0.0
+        self._start, self._at = 0.0, aided.launch_height
+        self._height = self._at
         self._beside = Beside()
 
     @property
@@ -115,6 +133,7 @@ class RailWind:
             ud, cd = -hu * uu, -hc * cc
         self.on, self.pushed, self.side = True, False, 0.0
         uu, cc = uu + gusts, cc + gusts
+        self._start, self._height = u, self._at
         self._beside = Beside(c, cc, v=uc, d=cd)
         return u, sqrt(uu), off, variance, ud
 
@@ -157,9 +176,17 @@ class RailWind:
         """Return V, m/s, of the filter's airspeed."""
         return hypot(u, self._beside.value) if self.on else u
 
-    def advance(self, dt: float, variance: float) -> None:
+    def gained(self, u: float) -> float:
+        """Return the speed over the ground, m/s: what u has gained."""
+        return u - self._start
+
+    def advance(self, dt: float, variance: float, energy: EnergyFilter) -> None:
         """Go on by so much, s, in which gusts have added a variance to that of u, m²/s², and to that of c."""
         self._beside.advance(dt)
+        if self.pushed:  # up the rail the wind across grows, too
+            climb = self.gained(energy.v) * energy.s / GRAVITY
+            self._height += climb * dt
+            self._beside.value *= 1.0 + GROWTH * climb * dt / self._height
         self._beside.variance += variance
 
     def total(self, energy: EnergyFilter, reading: float, variance: float, pushed: float, heat: float) -> float:

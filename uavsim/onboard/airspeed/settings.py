@@ -24,8 +24,12 @@ class AidedSettings:
     gust_height : float
         Height above the launch at which these hold, m; the gust's density is as 1/height; 0: they hold everywhere.
     shear : float
-        How fast the mean wind grows with the logarithm of the height, dW/d(ln h), m/s: so much more may the airspeed
-        wander in a climb; 0: not at all.
+        How far it is unknown how fast the mean wind along the path grows with the logarithm of the height, m/s: so much
+        more may the airspeed wander in a climb; 0: not at all.
+    shear_along : float
+        What is known of that, dW/d(ln h) of the headwind, m/s: so much does the airspeed grow in a climb.
+    launch_height : float
+        Of the aircraft above the ground at the launch, m.
     slope_rate : float
         How fast the climb's share of gravity, g·sin γ, wanders in flight, (m/s²)/√s.
     slope_time : float
@@ -69,6 +73,8 @@ class AidedSettings:
     gust_length: Annotated[float, Interval(gt=1.0, le=5000.0)] = 200.0
     gust_height: Annotated[float, Interval(ge=0.0, le=5000.0)] = 0.0
     shear: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.0
+    shear_along: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
+    launch_height: Annotated[float, Interval(gt=0.0, le=5000.0)] = 1.5
     slope_rate: Annotated[float, Interval(gt=0.0, le=50.0)] = 0.7
     slope_time: Annotated[float, Interval(gt=0.1, le=1000.0)] = 5.0
     bias_sd: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.3
