@@ -133,7 +133,7 @@ def _rail_wind(scenario: Scenario) -> dict[str, float]:
     height = launcher.height + scenario.air_data.position[0] * sin(up)
     north, east = mean_wind(environment, height)
     turbulent, _ = deviations(environment.turbulence_wind_20ft, height)
-    sd = share * hypot(turbulent, DECLARED * hypot(north, east))
+    sd = hypot(scenario.mismatch.gust * turbulent, share * DECLARED * hypot(north, east)) if share > 0.0 else 0.0
     if not sd > 0.0:
         return {}
     heading = radians(launcher.heading_deg)

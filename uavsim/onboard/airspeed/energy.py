@@ -17,16 +17,16 @@ class Beside:
 
     value: float = 0.0
     variance: float = 0.0
-    v: float = 0.0
-    b: float = 0.0
-    p: float = 0.0
-    s: float = 0.0
-    d: float = 0.0
-    k: float = 0.0
+    of_v: float = 0.0
+    of_b: float = 0.0
+    of_p: float = 0.0
+    of_s: float = 0.0
+    of_d: float = 0.0
+    of_k: float = 0.0
 
     def advance(self, dt: float) -> None:
         """Be told that the state has been predicted by so much, s: v has taken b and s."""
-        self.v -= dt * (self.b + self.s)
+        self.of_v -= dt * (self.of_b + self.of_s)
 
 
 SEVEN_R = 7.0 * GAS_CONSTANT_DRY_AIR  # J/(kg·K): 2·c_p, v²/(7·R·T) = (γ − 1)/2·M²
@@ -111,11 +111,11 @@ class EnergyFilter(EnergyModel):
     def turn(self, speed: float, variance: float, x: float, y: float, beside: Beside) -> None:
         """Be told that the airspeed is along another path, m/s, with this variance, m²/s²: V = x v + y c."""
         self.v, self.vv = speed, variance
-        self.vb = x * self.vb + y * beside.b
-        self.vp = x * self.vp + y * beside.p
-        self.vs = x * self.vs + y * beside.s
-        self.vd = x * self.vd + y * beside.d
-        self.vk = x * self.vk + y * beside.k
+        self.vb = x * self.vb + y * beside.of_b
+        self.vp = x * self.vp + y * beside.of_p
+        self.vs = x * self.vs + y * beside.of_s
+        self.vd = x * self.vd + y * beside.of_d
+        self.vk = x * self.vk + y * beside.of_k
 
     def tie_difference(self, covariance: float) -> None:
         """Know that d goes with the airspeed at the start, by a covariance, Pa·m/s."""
@@ -144,26 +144,26 @@ class EnergyFilter(EnergyModel):
         """
         hv, hc = slopes
         c = beside
-        gv = hv * self.vv + self.vp + self.vd + pushed * self.vk + hc * c.v
-        gb = hv * self.vb + self.bp + self.bd + pushed * self.bk + hc * c.b
-        gp = hv * self.vp + self.pp + self.pd + pushed * self.pk + hc * c.p
-        gs = hv * self.vs + self.ps + self.sd + pushed * self.sk + hc * c.s
-        gd = hv * self.vd + self.pd + self.dd + pushed * self.dk + hc * c.d
-        gk = hv * self.vk + self.pk + self.dk + pushed * self.kk + hc * c.k
-        gc = hv * c.v + c.p + c.d + pushed * c.k + hc * c.variance
+        gv = hv * self.vv + self.vp + self.vd + pushed * self.vk + hc * c.of_v
+        gb = hv * self.vb + self.bp + self.bd + pushed * self.bk + hc * c.of_b
+        gp = hv * self.vp + self.pp + self.pd + pushed * self.pk + hc * c.of_p
+        gs = hv * self.vs + self.ps + self.sd + pushed * self.sk + hc * c.of_s
+        gd = hv * self.vd + self.pd + self.dd + pushed * self.dk + hc * c.of_d
+        gk = hv * self.vk + self.pk + self.dk + pushed * self.kk + hc * c.of_k
+        gc = hv * c.of_v + c.of_p + c.of_d + pushed * c.of_k + hc * c.variance
         spread = hv * gv + gp + gd + pushed * gk + hc * gc + variance
         return self._correct_two(above - self.d - pushed * self.k, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
 
     def static_of_two(self, reading: float, variance: float, ahead: float, slope: float, beside: Beside) -> float:
         """Take a static pressure as `static`; its derivative by the quantity beside the state is `slope`."""
         c = beside
-        gv = self.vp + ahead * self.vs + slope * c.v
-        gb = self.bp + ahead * self.bs + slope * c.b
-        gp = self.pp + ahead * self.ps + slope * c.p
-        gs = self.ps + ahead * self.ss + slope * c.s
-        gd = self.pd + ahead * self.sd + slope * c.d
-        gk = self.pk + ahead * self.sk + slope * c.k
-        gc = c.p + ahead * c.s + slope * c.variance
+        gv = self.vp + ahead * self.vs + slope * c.of_v
+        gb = self.bp + ahead * self.bs + slope * c.of_b
+        gp = self.pp + ahead * self.ps + slope * c.of_p
+        gs = self.ps + ahead * self.ss + slope * c.of_s
+        gd = self.pd + ahead * self.sd + slope * c.of_d
+        gk = self.pk + ahead * self.sk + slope * c.of_k
+        gc = c.of_p + ahead * c.of_s + slope * c.variance
         innovation, spread = reading - self.p - ahead * self.s, gp + ahead * gs + slope * gc + variance
         return self._correct_two(innovation, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
 
@@ -182,12 +182,12 @@ class EnergyFilter(EnergyModel):
             beside.value += gain * innovation
             beside.variance -= gain * gc
             gv, gb, gp, gs, gd, gk = g
-            beside.v -= gain * gv
-            beside.b -= gain * gb
-            beside.p -= gain * gp
-            beside.s -= gain * gs
-            beside.d -= gain * gd
-            beside.k -= gain * gk
+            beside.of_v -= gain * gv
+            beside.of_b -= gain * gb
+            beside.of_p -= gain * gp
+            beside.of_s -= gain * gs
+            beside.of_d -= gain * gd
+            beside.of_k -= gain * gk
         return nis
 
     def shift_speed(self, change: float) -> None:

@@ -134,7 +134,7 @@ class RailWind:
         self.on, self.pushed, self.side = True, False, 0.0
         uu, cc = uu + gusts, cc + gusts
         self._start, self._height = u, self._at
-        self._beside = Beside(c, cc, v=uc, d=cd)
+        self._beside = Beside(c, cc, of_v=uc, of_d=cd)
         return u, sqrt(uu), off, variance, ud
 
     def _corrected(
@@ -213,7 +213,7 @@ class RailWind:
         if v < SMALL:
             return v, variance + self._beside.variance
         x, y = u / v, c / v
-        found = x * x * variance + 2.0 * x * y * self._beside.v + y * y * self._beside.variance
+        found = x * x * variance + 2.0 * x * y * self._beside.of_v + y * y * self._beside.variance
         return v, found if found > 0.0 else 0.0
 
     def leave(self, energy: EnergyFilter) -> None:
