@@ -11,11 +11,12 @@ estimator: this module alone copies them from the one into the other. What no de
 * So is the humidity of the air.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import cos, hypot, radians, sin, sqrt
 
 from sensors import HeadKnowledge, Streams, known_of_accelerometer, known_of_head, membranes
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
+from uavsim.onboard.airspeed.head_errors import HeadErrors
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.plants.air.dryden import FOOT, LOWEST, deviations, lengths
 from uavsim.plants.air.settings import EnvironmentSettings
@@ -28,11 +29,35 @@ DECLARED = 0.1  # share of the mean wind that a declared one is off by: a hand a
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
 
 
-def calibrated(scenario: Scenario, streams: Streams) -> tuple[float, float]:
-    """What a calibration found of the two membranes' sensitivity along body x, Pa/(m/s²); total, static.
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """What a calibration of the units that fly found, with errors of its own.
 
-    It is done on the units that fly, with an error of its own.
+    Attributes
+    ----------
+    total, static : float
+        The two membranes' sensitivity along body x, Pa/(m/s²).
+    ports : tuple of float
+        Its errors of the static port's coefficients c₀, c_α, c_αα and c_ββ, in their standard deviations.
     """
+
+    total: float = 0.0
+    static: float = 0.0
+    ports: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+
+
+NO_CALIBRATION = Calibration()
+
+
+def calibrated(scenario: Scenario, streams: Streams) -> Calibration:
+    """What a calibration found: done on the units that fly, with errors of its own."""
+    a, b, c, d = streams("onboard.ports.calibration").standard_normal(4).tolist()
+    total, static = _membranes(scenario, streams)
+    return Calibration(total, static, (a, b, c, d))
+
+
+def _membranes(scenario: Scenario, streams: Streams) -> tuple[float, float]:
+    """The two membranes' sensitivity along body x as it was found, Pa/(m/s²); total, static."""
     air, share = scenario.air_data, scenario.mismatch.acceleration_calibration
     if not air.acceleration_sensitivity:
         return 0.0, 0.0
@@ -44,7 +69,7 @@ def calibrated(scenario: Scenario, streams: Streams) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 0.0)) -> NoiseModel:
+def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION) -> NoiseModel:
     """What the estimator believes of the head and of the accelerometer."""
     belief = scenario.mismatch
     head, accelerometer = (
@@ -52,7 +77,7 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
         known_of_accelerometer(scenario.accelerometer, scenario.vibration),
     )
     total, static = head.total, head.static
-    known, unknown = _acceleration(head, belief, calibration)
+    known, unknown = _acceleration(head, belief, (calibration.total, calibration.static))
     return NoiseModel(
         total_sd=belief.total_noise * total.noise_sd,
         static_sd=belief.static_noise * static.noise_sd,
@@ -89,7 +114,31 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
         rail_elevation_sd=radians(scenario.flight_computer.rail_elevation_sd_deg),
         rail_roll=radians(scenario.flight_computer.rail_roll_deg),
         difference_sd=belief.drift * head.difference_sd,
+        head=_ports(head, belief, calibration),
         covered=scenario.air_data.tare == "covered",
+    )
+
+
+def _ports(head: HeadKnowledge, belief: MismatchSettings, calibration: Calibration) -> HeadErrors:
+    """What is believed of both ports' errors: as the calibration found them."""
+    ports, (error, alpha, alpha2, beta2) = head.ports, calibration.ports
+    known = belief.position
+    if head.ports.error == head.ports.error_alpha == head.ports.error_alpha2 == head.ports.error_beta2 == 0.0:
+        error = alpha = alpha2 = beta2 = 0.0  # nothing was found
+    return HeadErrors(
+        limit=ports.limit,
+        error=known * (ports.error + error * ports.position_sd),
+        error_alpha=known * (ports.error_alpha + alpha * ports.alpha_sd),
+        error_alpha2=known * (ports.error_alpha2 + alpha2 * ports.alpha2_sd),
+        error_beta2=known * (ports.error_beta2 + beta2 * ports.beta2_sd),
+        error_mach2=known * ports.error_mach2,
+        total_slipstream=known * ports.total_slipstream,
+        static_slipstream=known * ports.static_slipstream,
+        position_sd=belief.position_sd * ports.position_sd,
+        alpha_sd=belief.position_sd * ports.alpha_sd,
+        alpha2_sd=belief.position_sd * ports.alpha2_sd,
+        beta2_sd=belief.position_sd * ports.beta2_sd,
+        slipstream_sd=belief.position_sd * ports.slipstream_sd,
     )
 
 

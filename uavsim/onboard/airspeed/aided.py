@@ -155,6 +155,7 @@ class AidedFilter(Estimator):
         "_onset",
         "_plain",
         "_plain_tare",
+        "_position",
         "_position_share",
         "_push",
         "_push_variance",
@@ -232,6 +233,7 @@ class AidedFilter(Estimator):
         self._wind, self._angles, self._head = RailWind(aided, noise.head), FlowAngles(aided), noise.head
         self._wind_known = self._wind.declared or self._tare_end == -inf
         self._wrong, self._throttle, self._position_share = not noise.head.none, 0.0, 0.0
+        self._position = noise.head.error / (1.0 - noise.head.error)
         self._warmed = 0.2 * noise.thermometer_recovery
         self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
@@ -520,7 +522,9 @@ class AidedFilter(Estimator):
         nis_total, nis_static = self._take(p_total, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
         if total and static and temperature > 0.0:
-            excess = (p_total - self._plain_tare - p_static) / p_static
+            difference = p_total - self._plain_tare - p_static
+            static_port = p_static - self._position * difference  # as the pressures alone have it (`paper`)
+            excess = (p_total - self._plain_tare - static_port) / static_port
             raw = isentropic_speed(excess, air.heat) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 

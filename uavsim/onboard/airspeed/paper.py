@@ -79,6 +79,7 @@ class PaperFilter(Estimator):
         "_fastest",
         "_heating",
         "_law_ends",
+        "_position",
         "_relation",
         "_scale",
         "_stamps",
@@ -121,6 +122,7 @@ class PaperFilter(Estimator):
         self._total_ends_at = within(noise.total_range, noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._static_ends_at = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._clipped = False
+        self._position = noise.head.error / (1.0 - noise.head.error)
         self._law_ends = TRANSONIC**2 * airdata.GAMMA * airdata.GAS_CONSTANT_DRY_AIR * scale_squared
         self._t = -inf
         longest = jump(noise.head_rate)
@@ -183,8 +185,11 @@ class PaperFilter(Estimator):
         covered = self._taring is not None and self._tared(t, p_total - p_static, new_total, new_static)
 
         tare = self._tare
-        raw = self._scale * self._relation(p_total - tare, p_static, temperature) if measured else nan
+        below = self._position * (p_total - tare - p_static)
+        raw = self._scale * self._relation(p_total - tare, p_static - below, temperature) if measured else nan
         total, static = self._total.value - tare, self._static.value
+        if self._position:  # the static port's share is taken off, at any airspeed the same
+            static -= self._position * (total - static)
         known = LEAST_PRESSURE <= static <= MOST_PRESSURE
         speed = self._scale * self._relation(total, static, self._temperature) if known else nan
         nis_total, nis_static = self._total.nis if new_total else nan, self._static.nis if new_static else nan

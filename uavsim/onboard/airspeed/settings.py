@@ -61,7 +61,7 @@ class AidedSettings:
         Standard deviation of each, m/s: turbulence, and what a declared wind is off by; 0: no wind is declared.
     lift_slope : float
         a of α = a n/(ρ V²) + α₀ with the wings out, n being −f_z, kg/m²: mass over half the wing's area and the slope
-        of its lift; 0: the angle of attack is not known. That of fw8 and fw25 by regression of a flight.
+        of its lift; 0: the angle of attack is not known. That of fw8, by regression on four of its flights.
     lift_zero : float
         α₀, rad.
     replay : float
@@ -89,8 +89,8 @@ class AidedSettings:
     rail_wind_side: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
     rail_wind_down: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
     rail_wind_sd: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.0
-    lift_slope: Annotated[float, Interval(ge=0.0, le=1000.0)] = 0.0
-    lift_zero: Annotated[float, Interval(ge=-0.5, le=0.5)] = 0.0
+    lift_slope: Annotated[float, Interval(ge=0.0, le=1000.0)] = 9.45
+    lift_zero: Annotated[float, Interval(ge=-0.5, le=0.5)] = -0.0695
     replay: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.3
 
 
