@@ -657,7 +657,8 @@ class AidedFilter(Estimator):
         tared = p_total - self._tare - self._noise.acceleration * pushed
         unknown = 0.0
         if self._wrong:
-            self._angles.lift = self._lift
+            if self._lift == self._lift:
+                self._angles.lift = self._lift
             above, off, unknown = self._off()
             tared, p_static = tared - above, p_static - off
         nis_static, nis_total = energy.fly(
@@ -728,11 +729,9 @@ class AidedFilter(Estimator):
                 self.ports.torn = True
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, to)
-        lift = self._gained.lift()
-        if lift == lift:
-            self._lift = lift
-        if self.time > self._steady_from:
-            turned, doubt = pulled(self._lift, v)
+        lift = self._lift = self._gained.lift()
+        if self.time > self._steady_from and lift == lift:
+            turned, doubt = pulled(lift, v)
             gained -= turned * dt
             variance += doubt * dt
         self.time, self._u, self._w = to, u, w
