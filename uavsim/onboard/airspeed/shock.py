@@ -12,7 +12,7 @@ from math import inf
 WIDE = 4  # readings of the head, of each mean: 40 ms at 100 Hz
 # m/s² and standard deviations of a step that is looked at. By hand: the motor's start and gusts stay below as a rule,
 # and an offset of less is within what b may do
-SIZE, DEVIATIONS = 1.0, 6.0
+SIZE, DEVIATIONS = 1.0, 4.5
 # share of the step, and of the least one, that each mean's readings may differ by: a slope has no two levels. By hand
 LEVEL, NOISE = 0.2, 0.6
 LARGEST = 15.0  # m/s²; a greater one is a push that begins or ends
