@@ -117,9 +117,9 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_opened", "_p", "_pull", "_rough", "_silent", "_smooth", "_sound", "_still", "_t",
-        "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
+        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
+        "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough", "_silent",
+        "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -136,6 +136,7 @@ class TotalWatch:
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at, self._opened = 0.0, -inf, -inf
+        self._opened_by = aided.bias_sd**2, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
         self.faulty = self._astray = self.undecided = self._silent = False
@@ -225,11 +226,17 @@ class TotalWatch:
 
     def open_bias(self, t: float, variance: float) -> None:
         """Be told at `t`, s, that b may have moved by that variance, (m/s²)²."""
+        self._opened_by = self._bias_variance(t), t
         self.jump(t, variance)
         self.port.frozen.open_bias(variance)
         self._taught = min(self._taught, RELEARNT)
         self._wandering.forget()
         self._opened = t + REOPENED
+
+    def close_bias(self) -> None:
+        """Be told that b has not moved at the last step."""
+        variance, at = self._opened_by
+        self._jumped, self._jumped_at = variance - self._bias_sd**2, at
 
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""
