@@ -195,14 +195,16 @@ class TotalWatch:
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
+        wandering = self._wandering
+        wanders = self._wanders(v, change - energy.s * dt, test.lost, dt)
         if self._declared:
-            smooth = self._smooth.add(reading, dt, test.nis, test.spread, self._pull.size < TURNS and t > self._opened)
+            straight = self._pull.size < TURNS and t > self._opened
+            smooth = self._smooth.add(reading, dt, test.nis, test.spread, straight)
             if smooth == 0.0:
                 self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
-            elif smooth > LEVEL:
+            if (smooth > LEVEL and wandering.large) or (wanders and smooth > DOUBTED):
                 return "leak"
-        wanders = self._wanders(v, change - energy.s * dt, test.lost, dt)
-        if wanders and not (self._declared and self._smooth.evidence < DOUBTED):
+        elif wanders:
             return "leak"
         return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
