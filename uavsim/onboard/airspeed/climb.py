@@ -25,7 +25,9 @@ CLIMB_SD, CLIMB_RATE = 3.0, 0.2
 # s for which a pull (`lift`) may be a turn's and no change of climb: in a level turn at 60° f_z says 1 g, and the climb
 # stays. By hand: as long as it takes to roll; tests/onboard/test_airspeed_manoeuvres.py holds the check
 TURNING = 1.0
-GUSTY = 1.5  # m/s² more than `lift.STRAIGHT`, up to which it is a gust's or a gentle turn's, and f_z is believed. By hand
+GUSTY = (
+    1.5  # m/s² more than `lift.STRAIGHT`, up to which it is a gust's or a gentle turn's, and f_z is believed. By hand
+)
 BIAS_SD, BIAS_RATE = 0.5, 0.05  # m/s² and (m/s²)/√s of a. By hand, as the rate above
 DOUBT = 0.03  # nats that a reading takes off, so that chance does not add up. By hand; docs/faults.md holds the check
 

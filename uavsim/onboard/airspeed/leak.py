@@ -39,7 +39,7 @@ class LeakTest:
         Whether it is one of two standard deviations, so that a port that shows no other gusts leaks.
     """
 
-    __slots__ = ("_far", "_gust", "_length", "_large", "_near", "large", "near", "way")
+    __slots__ = ("_far", "_gust", "_large", "_length", "_near", "large", "near", "way")
 
     def __init__(self, sd: float, length: float) -> None:
         sd = max(sd, LEAST_SD)

@@ -117,9 +117,10 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
-        "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough", "_silent",
-        "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
+        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
+        "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
+        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty", "port",
+        "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -144,7 +145,7 @@ class TotalWatch:
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
         self._near, self._taught = 0, 0.0
-        self._pull = Pull()
+        self._pull, self._gust_variance = Pull(), aided.gust_sd**2
         self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
@@ -200,7 +201,7 @@ class TotalWatch:
         if self._declared:
             straight = self._pull.size < TURNS and t > self._opened
             smooth = self._smooth.add(reading, dt, test.nis, test.spread, straight)
-            if smooth == 0.0:
+            if smooth == 0.0 and not wandering.large:
                 self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
             if (smooth > LEVEL and wandering.large) or (wanders and smooth > DOUBTED):
                 return "leak"
@@ -282,6 +283,8 @@ class TotalWatch:
         v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
+        if kind == "leak":  # a gust that was there before cannot be told from its beginning
+            vv += self._gust_variance
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
 
@@ -301,7 +304,7 @@ class TotalWatch:
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
-        lives = not self._silent or self._smooth.lives(t, reading)
+        lives = not self._silent or self._smooth.lives(t, pressure)
         if self._astray:
             spread = min(spread, AGREE_SD * AGREE_SD)
         if not lives:
