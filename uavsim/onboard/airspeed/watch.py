@@ -66,7 +66,8 @@ LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried
 AGREE_SD = 5.0 / 3.0
 
 # kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
-UNTAKEN = ("jump", "silent", "invalid", "range")
+MUTE = ("silent", "invalid", "range")  # and there was nothing to take
+UNTAKEN = ("jump", *MUTE)
 ASTRAY = ("drift", "leak", "jump")
 # kinds after which it must show the gusts that are declared: a port that is shut and leaks moves, but shows none
 GUSTLESS = ("frozen", "drift", "leak")
@@ -112,6 +113,8 @@ class TotalWatch:
     port : PortMonitor
     faulty : bool
         Whether the port is flagged.
+    coasts : bool
+        Whether V is carried on apart from p; after mere silence the filter goes on as it is.
     undecided : bool
         Whether an accelerometer that drifts would explain the same: in still air the airspeed crept from the force.
     """
@@ -119,8 +122,8 @@ class TotalWatch:
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
         "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
-        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty", "port",
-        "undecided",
+        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "coasts", "faulty",
+        "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -140,7 +143,7 @@ class TotalWatch:
         self._opened_by = aided.bias_sd**2, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
-        self.faulty = self._astray = self.undecided = self._silent = False
+        self.faulty = self._astray = self.undecided = self._silent = self.coasts = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
@@ -236,10 +239,10 @@ class TotalWatch:
         self._wandering.forget()
         self._opened = t + REOPENED
 
-    def close_bias(self) -> None:
-        """Be told that b has not moved at the last step."""
+    def close_bias(self, moved: float) -> None:
+        """Be told that b has not taken up the last step, but only moved by so much, (m/s²)²."""
         variance, at = self._opened_by
-        self._jumped, self._jumped_at = variance - self._bias_sd**2, at
+        self._jumped, self._jumped_at = variance - self._bias_sd**2 + moved, at
 
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""
@@ -259,6 +262,11 @@ class TotalWatch:
         density, gust : float
             ρ, kg/m³, and the gusts' density, m/s².
         """
+        self.coasts = kind not in MUTE
+        if not self.coasts:  # the filter goes on as it is
+            self.port.back.flag(now[0])
+            self.faulty, self._astray, self._silent, self.undecided = True, False, False, False
+            return
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
@@ -293,7 +301,7 @@ class TotalWatch:
     ) -> None:
         """Flag a port that has not risen in the stroke; the pressure in it, and V by the force, with their variance."""
         self.port.back.flag(t, *held)
-        self.faulty = self._astray = True
+        self.faulty = self._astray = self.coasts = True
         self.undecided, self._bias = False, 0.0
         energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
