@@ -67,7 +67,8 @@ class FlightPathSettings:
     swing
         How long a hand pushes, s.
     legs
-        What is flown after the push, one after the other; the last one's end is held.
+        What is flown after the push, one after the other; the last one's end is held. Without any it goes on as the
+        push has left it.
     wing_loading
         Mass over wing area, kg/m²: with the lift slope it says how far the body turns for a load.
     lift_slope
@@ -81,7 +82,7 @@ class FlightPathSettings:
     push: PushKind = "catapult"
     burn: Annotated[float, Interval(ge=0.05, le=60)] = 7.0
     swing: Annotated[float, Interval(ge=0.05, le=2)] = 0.3
-    legs: tuple[LegSettings, ...] = (LegSettings(4.0, airspeed=32.0), LegSettings(3.0, climb_deg=0.0))
+    legs: tuple[LegSettings, ...] = ()
     wing_loading: Annotated[float, Interval(ge=1, le=1000)] = 25.0
     lift_slope: Annotated[float, Interval(ge=0.5, le=10)] = 4.8
     zero_lift_deg: Annotated[float, Interval(ge=-15, le=5)] = -4.8
