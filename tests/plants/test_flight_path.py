@@ -188,6 +188,27 @@ def test_it_flies_with_what_is_on_board_and_replays() -> None:
     assert again.estimate.equals(flight.estimate)
 
 
+def test_the_wash_of_the_propeller_at_full_throttle_is_at_both_ports() -> None:
+    """At η = 1: p_t + e_t q_c at the total port, p_s + (1 + e_s) c₀ q_c at the static one, of a BMP581."""
+    quiet = [
+        f"air_data.{name}.{key}"
+        for name in ("total", "static")
+        for key in ("preset=bmp581", "noise_scale=0", "unit=ideal")
+    ]
+    wash = ("total_port.slipstream=0.2", "static_port.slipstream=0.5", "static_port.error=0.04")
+    legs = "plant.flight_path.legs=[{duration=2,airspeed=40,climb_deg=0},{duration=1,throttle=1}]"
+    still = [f"air_data.{name}.errors.{what}=0" for name in ("total", "static") for what in ("drift", "random_walk")]
+    flight = fly(
+        "manoeuvres", seed=3, overrides=[*quiet, *still, *(f"air_data.{key}" for key in wash), legs, "duration=9"]
+    )
+    true, read = flight.truth.iloc[-1], flight.air_data.iloc[-1]
+    q = true["p_total"] - true["p_static"]
+    assert true["throttle"] == 1.0
+    assert q > 900.0
+    assert read["p_total"] - true["p_total"] == pytest.approx(0.2 * q, abs=0.1)
+    assert read["p_static"] - true["p_static"] == pytest.approx(1.5 * 0.04 * q, abs=0.1)
+
+
 @pytest.mark.parametrize(
     ("settings", "level", "says"),
     [
