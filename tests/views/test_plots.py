@@ -14,9 +14,10 @@ from PIL import Image
 
 import uavsim
 from uavsim.flight import UNITS, Flight
+from uavsim.judged import Judged
 from uavsim.onboard.launch import DetectorSettings, build
 from uavsim.scenario import Scenario
-from uavsim.score import Judged, score
+from uavsim.score import score
 from uavsim.studies.batch import Batch
 from uavsim.studies.campaign.flown import ErrorTrace, row_of
 from uavsim.truth import STANDARD_GRAVITY
