@@ -102,7 +102,7 @@ def print_score(flight: "Flight") -> None:
     head = words("\n", (scenario.name, "bold"), f", seed {score['seed']}: ", outcome, f" ({verdict})\n")
     _print(console, head, _launch_table(score, scenario), "")
     if score.get("reason"):
-        _print(console, words("reason: ", score["reason"]), "")
+        console.print(f"Reason: {score['reason']}\n")
     flew = scenario.plant.chosen.flies
     if flew or score["airspeed"]["samples"]:
         phases = ("stroke", "transition", "cruise") if flew else ()
@@ -173,10 +173,10 @@ def _integrity_line(airspeed: dict[str, Any]) -> str:
     longest, losses = airspeed.get("hazard_time"), airspeed.get("losses")
     if longest is None or losses is None:
         return ""
-    verdict = "hazardous" if airspeed["hazard"] else "no hazard"
+    verdict = "a hazard" if airspeed["hazard"] else "no hazard"
     return (
-        f"Valid and more than 3 m/s off for {longest:.2f} s at a time ({verdict}: more than 1 s); "
-        f"losses of validity: {losses}; flags: {airspeed['flags']}, false: {airspeed['false_flags']}"
+        f"Longest spell of a valid airspeed more than 3 m/s off: {longest:.2f} s, {verdict}\n"
+        f"Losses of validity: {losses}; flags of a channel: {airspeed['flags']}, false {airspeed['false_flags']}"
     )
 
 
