@@ -95,7 +95,7 @@ def _last(flight: Judged) -> NDArray[np.bool_]:
     return np.asarray(flight.time >= flight.time[-1] - LAST)
 
 
-def _worst(flight: Judged, badness: Array) -> tuple[float, float]:
+def _worst(flight: Judged, badness: Array) -> tuple[float, int]:
     """Time and place of the worst row of the last 5 s; what is no number is worst of all."""
     rows = np.flatnonzero(_last(flight))
     worst = int(rows[np.argmax(np.where(np.isnan(badness[rows]), np.inf, badness[rows]))])

@@ -51,9 +51,12 @@ def _frame(axes: "Axes", record: Record, east: float, north: float) -> None:
     width, height = inches(axes)
     spans = [max(MARGIN * (high - low), LEAST) for low, high in ends]
     scale = max(spans[0] / width, spans[1] / height)
-    for (low, high), inch, limits in zip(ends, (width, height), (axes.set_xlim, axes.set_ylim), strict=True):
-        middle, half = 0.5 * (low + high), 0.5 * scale * inch
-        limits(middle - half, middle + half)
+    (left, right), (bottom, top) = (
+        (0.5 * (low + high - scale * inch), 0.5 * (low + high + scale * inch))
+        for (low, high), inch in zip(ends, (width, height), strict=True)
+    )
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
     reach = 2.0 * scale * (width + height)
     axes.plot(
         [0.0, reach * east], [0.0, reach * north], color=BLACK, linewidth=0.8, linestyle=":", label="along the rail"
