@@ -128,6 +128,8 @@ _NONE = {
     "detector.options": "none",
     "estimator.options": "none",
     "plant.options": "none",
+    **dict.fromkeys(("airspeed", "climb_deg", "bank_deg", "throttle"), "as before"),
+    "load_g": "from the path",
     "version": "none",
     "sha256": "none",
     "detector": "as `threshold`",
