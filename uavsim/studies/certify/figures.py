@@ -1,7 +1,7 @@
 """What is kept of a flight: sums and extremes of its airspeed's error, what was flagged, and whether it was ready.
 
-Over the rows of each scored phase (docs/score.md), with e the error of the airspeed and s its claimed standard
-deviation:
+Over the rows of each scored phase (docs/score.md; of a rig its run), with e the error of the airspeed and s its claimed
+standard deviation:
 
     rows, valid         how many, and of how many of them `valid` is true
     within, within_valid  |e| ≤ 1.96 s, of all rows and of valid ones; an estimate that is no number is outside
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.flight import Flight
+from uavsim.score import RUN
 from uavsim.score_keys import PHASES
 from uavsim.studies.airspeed_flights import LEAD, NORMAL_95, bound, course, together
 
@@ -45,6 +46,7 @@ def figures(flight: Flight, *, bounded: bool = False) -> Row:
         "reason": score.get("reason") or "",
         "true_time": launch["true_time"],
         "latency": launch["latency"],
+        "since_crossing": launch["latency_from_crossing"],
         "detections": launch["detections"],
         "false_detections": launch["false_detections"],
         "hours": _hours(flight),
@@ -55,7 +57,7 @@ def figures(flight: Flight, *, bounded: bool = False) -> Row:
     row |= flags(flight)
     row |= errors.worst()
     allowed = _allowed(flight) if bounded and launch["detected_time"] is not None else None
-    for phase in PHASES:
+    for phase in (*PHASES, RUN):
         row |= {f"{phase}.{key}": value for key, value in errors.phase(phase, allowed).items()}
     return row
 

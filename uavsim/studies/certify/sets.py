@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from uavsim.studies.certify import healthy
+from uavsim.studies.certify import from_start, healthy, manoeuvres, offset
 from uavsim.studies.certify.figures import Row
 from uavsim.studies.certify.tasks import Task
 from uavsim.studies.certify.verdict import Verdict
@@ -34,4 +34,12 @@ class Set:
     judge: Callable[[Sequence[Row], int, dict[str, Any] | None], Verdict]
 
 
-SETS = {one.name: one for one in (Set("healthy", 150_001, healthy.SIZE, healthy.tasks, healthy.judge),)}
+SETS = {
+    one.name: one
+    for one in (
+        Set("healthy", 150_001, healthy.SIZE, healthy.tasks, healthy.judge),
+        Set("offset", 150_002, offset.SIZE, offset.tasks, offset.judge),
+        Set("from-start", 150_003, from_start.SIZE, from_start.tasks, from_start.judge),
+        Set("manoeuvres", 150_004, manoeuvres.SIZE, manoeuvres.tasks, manoeuvres.judge),
+    )
+}
