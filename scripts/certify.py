@@ -17,15 +17,16 @@ import time
 from pathlib import Path
 from typing import Any
 
-from uavsim.files import write_json
+from uavsim.files import write_json, write_text
 from uavsim.studies.certify.record import about, rows_in, run
-from uavsim.studies.certify.results import read
+from uavsim.studies.certify.results import read, refreshed
 from uavsim.studies.certify.sets import SETS, Set
-from uavsim.studies.certify.verdict import Check, lines
+from uavsim.studies.certify.verdict import lines
 from uavsim.studies.engine import engine, processes
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 RESULTS = REPOSITORY / "docs" / "results"
+PAGE = REPOSITORY / "docs" / "certify.md"
 
 
 def revision() -> str:
@@ -89,9 +90,9 @@ def certify(one: Set, options: argparse.Namespace) -> bool:
     return not any(check.met is False for check in verdict.checks)
 
 
-def not_met(checks: tuple[Check, ...]) -> list[str]:
-    """Return the names of what is not met."""
-    return [check.name for check in checks if check.met is False]
+def write_docs(results: Path) -> None:
+    """Write the tables of docs/certify.md anew."""
+    write_text(PAGE, refreshed(PAGE.read_text(encoding="utf-8"), results))
 
 
 def main() -> int:
@@ -105,6 +106,7 @@ def main() -> int:
     parser.add_argument("--resume", action="store_true", help="go on with what is in --out")
     parser.add_argument("--judge", action="store_true", help="fly nothing; judge what is in --out")
     parser.add_argument("--results", type=Path, help="folder to write the verdicts to, docs/results")
+    parser.add_argument("--docs", action="store_true", help="write the tables of docs/certify.md anew at the end")
     parser.add_argument("--suffix", default="", help="of the name of a verdict's file")
     parser.add_argument("--before", type=Path, default=RESULTS, help="folder with the verdicts of the version before")
     parser.add_argument("--worst", type=int, default=12, help="how many flights to look at are printed")
@@ -114,6 +116,8 @@ def main() -> int:
         sys.exit(f"Error: unknown set {unknown[0]!r}; there are {', '.join(SETS)}")
     try:
         met = [certify(SETS[name], options) for name in options.sets or SETS]
+        if options.docs:
+            write_docs(options.results or RESULTS)
     except (ValueError, OSError) as error:
         sys.exit(f"Error: {error}")
     except KeyboardInterrupt:

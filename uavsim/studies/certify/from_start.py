@@ -184,7 +184,7 @@ def task(number: int, seed: int) -> Task:
     place, flight = divmod(number, SECTION)
     name = list(CASES)[place]
     case = CASES[name]
-    drawn = float(Streams(seed, number)("certify.start").uniform(0.0, LATEST))
+    drawn = float(Streams(seed, number)("certify.start").uniform(0.01, LATEST))
     start = 0.0 if flight % 2 == 0 else round(drawn, 3)
     gusts = flight // 2 % 2 == 1
     broken = tuple(one.replace("START", f"{start:g}") for one in case.overrides)

@@ -85,11 +85,13 @@ def subset(count: int, seed: int) -> list[int]:
         return list(range(SIZE))
     shape = [len(levels) for levels in FACTORS.values()]
     generator = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(count,)))
+    if count > SIZE // 2:
+        return sorted(generator.permutation(SIZE)[:count].tolist())  # of so many any will do
     dealt = []
     for levels in shape:
         column = np.concatenate([generator.permutation(levels) for _ in range(-(-count // levels))])[:count]
         dealt.append(generator.permutation(column))
-    for _ in range(1000):  # a combination that came twice swaps one level with another flight
+    while True:  # a combination that came twice swaps one level with another flight
         numbers = np.ravel_multi_index(tuple(dealt), shape)
         _, first = np.unique(numbers, return_index=True)
         twice = np.setdiff1d(np.arange(count), first)
@@ -98,8 +100,6 @@ def subset(count: int, seed: int) -> list[int]:
         for one in twice:
             factor, other = int(generator.integers(len(shape))), int(generator.integers(count))
             dealt[factor][[one, other]] = dealt[factor][[other, one]]
-    else:
-        return sorted(generator.permutation(SIZE)[:count].tolist())  # of nearly all of them: any will do
     return sorted(int(number) for number in numbers)
 
 
@@ -296,14 +296,16 @@ def _coverage(levels: Sequence[dict[str, Any]]) -> list[Check]:
 def cells(flown: Sequence[Row]) -> list[dict[str, Any]]:
     """Return the tests of all pairs of levels in each phase, with the p-value of each."""
     tests: list[dict[str, Any]] = []
+    covered = {phase: shares(flown, phase, *VALID_ROWS) for phase in PHASES}
+    of = {factor: np.array([row[factor] for row in flown]) for factor in FACTORS}
     for one, other in combinations(FACTORS, 2):
         for a, b in product(FACTORS[one], FACTORS[other]):
-            some = [row for row in flown if row[one] == a and row[other] == b]
-            if len(some) < FEWEST_IN_A_CELL:
+            chosen = (of[one] == a) & (of[other] == b)
+            if chosen.sum() < FEWEST_IN_A_CELL:
                 continue
-            for phase in PHASES:
-                values = shares(some, phase, *VALID_ROWS)
-                cell = {"cell": f"{a}, {b}", "phase": phase, "flights": len(some), "coverage": _mean(values)}
+            for phase, all_values in covered.items():
+                values = all_values[chosen]
+                cell = {"cell": f"{a}, {b}", "phase": phase, "flights": int(chosen.sum()), "coverage": _mean(values)}
                 tests.append({**cell, "side": f"below {LOW:.2f}", "p": mean_below(values, LOW)})
                 if "calm" not in (a, b):
                     tests.append({**cell, "side": f"above {HIGH:.2f}", "p": mean_above(values, HIGH)})
