@@ -102,7 +102,8 @@ class Course:
         """Push over to 0 g, or pull up to 2 … 4 g; half of the extreme load is there on average."""
         if self.speed < FAST_ENOUGH:
             self.add(8.0, airspeed=float(self._draw.uniform(FAST_ENOUGH, 60.0)))
-        load, time = (0.0, 2.0) if self._draw.random() < 0.5 else (float(self._draw.uniform(2.0, 4.0)), 1.5)
+        over = self._draw.random() < 0.5 and self.height >= HIGH_ENOUGH
+        load, time = (0.0, 2.0) if over else (float(self._draw.uniform(2.0, 4.0)), 1.5)
         self.add(time, load_g=load)
         turned = 0.5 * (load - 1.0) * STANDARD_GRAVITY * time / self.speed  # rad of climb
         self.height += self.speed * turned * (0.5 * time + 1.5)  # of it, and of the way back to level flight
