@@ -51,7 +51,7 @@ def figures(flight: Flight, *, bounded: bool = False) -> Row:
         "false_detections": launch["false_detections"],
         "hours": _hours(flight),
         "ready": times.get("ready"),
-        "not_ready": _not_ready(flight),
+        "not_ready": readiness(flight)[1],
         "wing_out": times["wing_out_time"],
     }
     row |= flags(flight)
@@ -162,10 +162,14 @@ def _hours(flight: Flight) -> float:
     return max(0.0, end - (end if true is None else true)) / 3600.0
 
 
-def _not_ready(flight: Flight) -> str:
-    """Reasons of the last word on the rail, if that was `not_ready`."""
-    said = [event for event in flight.events if event["event"] in ("ready", "not_ready")]
-    return "; ".join(map(str, said[-1].get("reasons", ()))) if said and said[-1]["event"] == "not_ready" else ""
+def readiness(flight: Flight, until: float = np.inf) -> tuple[bool | None, str]:
+    """Return the last word on whether it is ready up to a time, None if there is none, and the reasons against it."""
+    said = [event for event in flight.events if event["event"] in ("ready", "not_ready") and event["t"] <= until]
+    if not said:
+        return None, ""
+    reasons = said[-1].get("reasons") or ""
+    told = reasons if isinstance(reasons, str) else "; ".join(map(str, reasons))
+    return (True, "") if said[-1]["event"] == "ready" else (False, told)
 
 
 def _allowed(flight: Flight) -> tuple[Array, Array, float] | None:

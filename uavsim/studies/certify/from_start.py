@@ -27,7 +27,7 @@ import numpy as np
 
 from sensors import Streams
 from uavsim.flight import Flight
-from uavsim.studies.certify.figures import WRONG, Errors, Row
+from uavsim.studies.certify.figures import WRONG, Errors, Row, readiness
 from uavsim.studies.certify.healthy import GUSTY
 from uavsim.studies.certify.tasks import Task
 from uavsim.studies.certify.verdict import Check, Verdict
@@ -90,12 +90,10 @@ def static_shut(flight: Flight) -> str:
 
 def not_ready(flight: Flight, channel: str) -> str:
     """Return what is wrong with a flight that must not be ready because of a part."""
-    release = flight.score["launch"]["release_time"]
-    said = [e for e in flight.events if e["event"] in ("ready", "not_ready") and e["t"] <= release]
-    if not said:
+    ready, reasons = readiness(flight, flight.score["launch"]["release_time"])
+    if ready is None:
         return "readiness is not told"
-    reasons = "; ".join(map(str, said[-1].get("reasons", ())))
-    if said[-1]["event"] == "ready":
+    if ready:
         return "ready"
     return "" if channel in reasons else f"not ready because of: {reasons}"
 
