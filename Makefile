@@ -10,7 +10,7 @@ help:
 	@echo "make fly       install, then fly the scenario 'catapult' with its score and plots"
 	@echo "make test      every check and test (ruff, mypy, import-linter, pytest)"
 	@echo "make validate  the statistical checks over many seeds, and the long attacks (a quarter of an hour)"
-	@echo "make certify   every set of docs/certify.md, whole (two hours; goes on where it was ended)"
+	@echo "make certify   every set of docs/certify.md, whole (two to three hours; goes on where it was ended)"
 	@echo "make mutants   how many of 300 small errors the tests see (half an hour)"
 	@echo "make golden    fly the short flights whose figures are kept, and keep them anew"
 	@echo "make bench     what a step costs"

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from uavsim.score_keys import PHASES
-from uavsim.studies.certify import healthy, offset
+from uavsim.studies.certify import healthy, in_flight, offset
 from uavsim.studies.certify.verdict import Verdict
 
 SD = {"stroke": 0.5, "transition": 0.1, "cruise": 0.05}
@@ -110,3 +110,38 @@ def test_an_offset_that_costs_accuracy_is_found() -> None:
     assert found(offset.judge(lost, 1), "±20 m/s²") is False
     named = [{**row, "ready": False, "not_ready": "accelerometer: 12 m/s² off"} for row in lost]
     assert found(offset.judge(named, 1), "±20 m/s²") is True
+
+
+def seen(name: str, **change: Any) -> list[dict[str, Any]]:
+    """100 flights of a case, of which the last is changed."""
+    place = list(in_flight.CASES).index(name)
+    rows = []
+    for flight in range(100):
+        row = {"number": place * in_flight.SECTION + flight, "case": name, "seed": 1, "fault": 10.0, "flagged": 10.5}
+        row |= {"recovered": None, "channel": in_flight.CASES[name].channel, "kind": "frozen", "false": 0, "off": None}
+        row |= {"climb": 2.0, "outcome": "cruise", "coverage": 0.95, "valid": 5.0, "error": 1.0}
+        rows.append({**row, "told_coverage": 0.95, "told_error": 1.0})
+    rows[-1] |= change
+    return rows
+
+
+@pytest.mark.parametrize(("name", "change", "met"), [
+    ("blocked-gusts", {}, True),
+    ("blocked-gusts", {"flagged": 12.5}, True),  # 99 of 100
+    ("blocked-gusts", {"false": 1}, False),
+    ("blocked-gusts", {"outcome": "crashed"}, False),
+    ("blocked-gusts", {"recovered": 15.0}, False),
+    ("blocked-for-3-s", {"recovered": 15.0}, False),  # and 99 are not
+    ("blocked-calm", {"flagged": 20.0, "off": 19.0}, True),
+    ("slow-leak-gusts", {"flagged": None}, True),
+    ("healthy-calm", {}, False),
+])  # fmt: skip
+def test_faults_in_flight_are_held_against_their_table(name: str, change: dict[str, Any], met: bool) -> None:
+    (check,) = in_flight.judge(seen(name, **change), 1).checks
+    assert check.met is met
+
+
+def test_a_healthy_flight_without_a_flag() -> None:
+    rows = [{**row, "flagged": None, "fault": None, "channel": ""} for row in seen("healthy-calm")]
+    (check,) = in_flight.judge(rows, 1).checks
+    assert check.met

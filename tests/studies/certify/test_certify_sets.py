@@ -5,9 +5,10 @@ from collections import Counter
 import pytest
 
 from uavsim.scenario import load_scenario
-from uavsim.studies.certify import from_start, healthy, manoeuvres, offset
+from uavsim.studies.certify import from_start, healthy, in_flight, manoeuvres, offset
 from uavsim.studies.certify.sets import SETS
 from uavsim.studies.certify.tasks import Task, fly
+from uavsim.studies.faults import CASES
 
 
 def test_the_whole_has_each_combination_once() -> None:
@@ -56,6 +57,8 @@ def test_each_task_is_a_scenario_that_is_taken(name: str) -> None:
     one = SETS[name]
     assert len(one.tasks(one.seed, None)) == one.size
     for task in one.tasks(one.seed, 5)[:5]:
+        if not isinstance(task, Task):
+            continue
         load_scenario(task.scenario, overrides=task.overrides)
     assert len({other.seed for other in SETS.values()}) == len(SETS)
 
@@ -94,3 +97,11 @@ def test_a_scenario_that_is_refused_is_a_row() -> None:
     assert row["outcome"] == "refused"
     assert "no-such-part" in row["reason"]
     assert (row["number"], row["wind"]) == (3, "calm")
+
+
+def test_every_case_in_flight_has_seeds_of_its_own() -> None:
+    found = in_flight.tasks(1)
+    assert {task.case for task in found} == set(CASES)
+    assert len({task.seed + task.number for task in found}) == len(found) == in_flight.SIZE
+    assert {*in_flight.HEALTHY, *in_flight.BY_ERROR, in_flight.LEAK, in_flight.FREED} <= set(CASES)
+    assert found[-1].command().endswith(f"{found[-1].case} --flights 1 --seed {1 + found[-1].number}")

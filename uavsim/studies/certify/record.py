@@ -17,7 +17,7 @@ from sensors.data_files import parse_json
 from uavsim.files import whole, write_json
 from uavsim.folders import StandingPlace
 from uavsim.studies.certify.figures import Row
-from uavsim.studies.certify.tasks import Task, fly
+from uavsim.studies.certify.tasks import Flyable, fly
 from uavsim.studies.engine import Crew
 from uavsim.studies.identity import differences, identity, versions
 
@@ -48,7 +48,7 @@ class Record:
         What is there was flown by other software, or is another set; one line.
     """
 
-    def __init__(self, folder: Path, name: str, seed: int, tasks: Sequence[Task], *, resume: bool) -> None:
+    def __init__(self, folder: Path, name: str, seed: int, tasks: Sequence[Flyable], *, resume: bool) -> None:
         self.folder, self.tasks = folder, tasks
         self._about: dict[str, Any] = {"set": name, "seed": seed, "flights": len(tasks), "identity": identity()}
         self._about["versions"] = versions()
@@ -72,7 +72,7 @@ class Record:
             self._rows = {row["number"]: row for row in rows_in(self.folder)}
 
     @property
-    def missing(self) -> list[Task]:
+    def missing(self) -> list[Flyable]:
         """Flights that are still to be flown."""
         return [task for task in self.tasks if task.number not in self._rows]
 
@@ -123,7 +123,7 @@ def run(
     out: Path,
     name: str,
     seed: int,
-    tasks: Sequence[Task],
+    tasks: Sequence[Flyable],
     crew: Crew,
     *,
     resume: bool = False,

@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from uavsim.studies.certify import from_start, healthy, manoeuvres, offset
+from uavsim.studies.certify import from_start, healthy, in_flight, manoeuvres, offset
 from uavsim.studies.certify.figures import Row
-from uavsim.studies.certify.tasks import Task
+from uavsim.studies.certify.tasks import Flyable
 from uavsim.studies.certify.verdict import Verdict
 
 
@@ -30,7 +30,7 @@ class Set:
     name: str
     seed: int
     size: int
-    tasks: Callable[[int, int | None], list[Task]]
+    tasks: Callable[[int, int | None], Sequence[Flyable]]
     judge: Callable[[Sequence[Row], int, dict[str, Any] | None], Verdict]
 
 
@@ -40,6 +40,7 @@ SETS = {
         Set("healthy", 150_001, healthy.SIZE, healthy.tasks, healthy.judge),
         Set("offset", 150_002, offset.SIZE, offset.tasks, offset.judge),
         Set("from-start", 150_003, from_start.SIZE, from_start.tasks, from_start.judge),
+        Set("in-flight", 150_005, in_flight.SIZE, in_flight.tasks, in_flight.judge),
         Set("manoeuvres", 150_004, manoeuvres.SIZE, manoeuvres.tasks, manoeuvres.judge),
     )
 }

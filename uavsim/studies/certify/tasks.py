@@ -9,7 +9,7 @@ of a set consists of flights of the whole, and each can be flown again by
 import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from uavsim.cosim import Cosimulation
 from uavsim.flight import Flight
@@ -59,19 +59,37 @@ class Task:
         sets = " ".join(f"--set {shlex.quote(one)}" for one in (f"index={index}", *self.overrides))
         return f"uavsim fly {self.scenario} --seed {self.seed} {sets}"
 
+    def fly(self) -> Row:
+        """Fly it; a scenario that is refused is a row as well, with the outcome `refused` and the reason."""
+        row: Row = {"number": self.number, **self.levels}
+        index = self.number if self.index is None else self.index
+        try:
+            overrides = (*self.overrides, f"seed={self.seed}", f"index={index}")
+            flight = Cosimulation(load_scenario(self.scenario, overrides=overrides))
+        except ValueError as error:
+            return {**row, "outcome": "refused", "reason": " ".join(str(error).split())[:300]}
+        flight.advance(flight.steps)
+        flown = flight.finish()
+        row |= figures(flown, bounded=self.bounded)
+        if self.rule is not None:
+            row |= self.rule(flown)
+        return row
 
-def fly(task: Task) -> Row:
-    """Fly one; a scenario that is refused is a row as well, with the outcome `refused` and the reason."""
-    row: Row = {"number": task.number, **task.levels}
-    index = task.number if task.index is None else task.index
-    try:
-        scenario = load_scenario(task.scenario, overrides=(*task.overrides, f"seed={task.seed}", f"index={index}"))
-        flight = Cosimulation(scenario)
-    except ValueError as error:
-        return {**row, "outcome": "refused", "reason": " ".join(str(error).split())[:300]}
-    flight.advance(flight.steps)
-    flown = flight.finish()
-    row |= figures(flown, bounded=task.bounded)
-    if task.rule is not None:
-        row |= task.rule(flown)
-    return row
+
+class Flyable(Protocol):
+    """A flight of a set."""
+
+    @property
+    def number(self) -> int:
+        """In its set."""
+
+    def fly(self) -> Row:
+        """Return its row, with its `number` and `outcome`."""
+
+    def command(self) -> str:
+        """Return what flies it again."""
+
+
+def fly(task: Flyable) -> Row:
+    """Fly one, in whatever process."""
+    return task.fly()
