@@ -130,6 +130,7 @@ _NONE = {
     "plant.options": "none",
     **dict.fromkeys(("airspeed", "climb_deg", "bank_deg", "throttle"), "as before"),
     "load_g": "from the path",
+    **dict.fromkeys(("below_temperature", "between_heights"), "any"),
     "version": "none",
     "sha256": "none",
     "detector": "as `threshold`",

@@ -223,6 +223,20 @@ FLIGHTS: dict[str, Wanted] = {
         "duration=4", *NOT_TWICE, "plant.launch_curve.ring_fraction=0.4", "plant.launch_curve.ring_hz=90",
         "plant.launch_curve.ring_phase_deg=200", "plant.launch_curve.ring_decay=0.08",
     )),
+    "torn-and-wet": ("catapult", 36, (
+        *NOT_TWICE, "duration=9", "air_data.static_port.tube.length=0.25", "air_data.batch=0.6",
+        port("total", 'kind="leak",start=6,stop=7.5,area=0.6'), port("static", 'kind="leak",start=7,area=2'),
+        'air_data.thermometer_faults=[{kind="invalid",start=5,stop=5.4},{kind="dead",start=8,size=400}]',
+    )),
+    "cover-left-on": ("catapult", 37, (*NOT_TWICE, "duration=6", "air_data.cover_left_on=true")),
+    "tubes-swapped": ("catapult", 38, (
+        *NOT_TWICE, "duration=6", "air_data.swapped_tubes=true", 'accelerometer.faults=[{kind="dead",start=5,size=2}]',
+    )),
+    "both-iced": ("catapult", 39, (
+        *NOT_TWICE, *CLIMB, "duration=12",
+        'air_data.port_faults=[{kind="ice",start=5,duration=1.5,between_heights=[12,200]}]',
+        'air_data.total.faults=[{kind="dead",start=10,size=90000}]',
+    )),
     "course": ("manoeuvres", 34, (
         *NOT_TWICE, "duration=15", "plant.flight_path.push=motor", "plant.flight_path.burn=2.5",
         "launcher.peak_specific_force_g=5.5", "environment.wind_speed=5", "environment.wind_from_deg=80",
