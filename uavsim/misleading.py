@@ -23,6 +23,7 @@ OFF = 3.0  # m/s from which on a valid airspeed misleads: a tenth of what is flo
 HAZARD = 1.0  # s of it without a break from which on that is a hazard
 LOST = 0.1  # s for which an airspeed that was valid is not, to count as a loss: as the flight computer gives it up
 FLAG = "airspeed_fault"
+FOR_GOOD = ("cover_left_on", "swapped_tubes")  # keys that are a fault from the first second on
 
 
 def figures(flight: "Judged") -> dict[str, Any]:
@@ -59,12 +60,14 @@ def spells(time: Array, during: NDArray[np.bool_]) -> list[float]:
 
 
 def fault_starts(settings: Any) -> Iterator[float]:
-    """Yield when each fault begins that settings hold anywhere, s: what is in a tuple `faults` and has a `start`."""
+    """Yield when each fault begins that settings hold anywhere, s: those of lists of faults, and what is always wrong."""
     if not is_dataclass(settings):
         return
     for field in fields(settings):
         value = getattr(settings, field.name)
-        if field.name == "faults":
+        if field.name in FOR_GOOD and value:
+            yield 0.0
+        elif field.name.endswith("faults"):
             yield from (fault.start for fault in value)
         elif is_dataclass(value):
             yield from fault_starts(value)
