@@ -60,7 +60,7 @@ def spells(time: Array, during: NDArray[np.bool_]) -> list[float]:
 
 
 def fault_starts(settings: Any) -> Iterator[float]:
-    """Yield when each fault begins that settings hold anywhere, s: those of lists of faults, and what is always wrong."""
+    """Yield when each fault begins that settings hold anywhere, s: those of lists, and what is always wrong."""
     if not is_dataclass(settings):
         return
     for field in fields(settings):
