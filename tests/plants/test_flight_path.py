@@ -17,7 +17,7 @@ from uavsim import airdata, fly
 from uavsim.cosim import replay
 from uavsim.plants.course.legs import LegSettings
 from uavsim.plants.plant import Run
-from uavsim.plants.rigs.flight_path import FlightPath, FlightPathSettings
+from uavsim.plants.rigs.flight_path import FlightPath, FlightPathSettings, still_air
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
 from uavsim.scenario import Scenario
 from uavsim.spread.read import unread
@@ -174,6 +174,17 @@ def test_air_and_pressures_agree() -> None:
     assert c["airspeed"][:1000].mean() > 3.0  # the wind blows on the rail
     on_rail = np.hypot(c["mean_wind_n"], c["mean_wind_e"])[:1000]
     assert on_rail == pytest.approx(6.0 * np.log(2.0 / 0.04572) / np.log(6.096 / 0.04572), rel=0.1)
+
+
+def test_the_air_at_rest_is_that_in_which_the_aircraft_flies() -> None:
+    """By height, 0.02 Pa and 1e-6 K: JSBSim's atmosphere of a warm, humid day of low pressure at 1500 m."""
+    day = ("ground_elevation=1500", "temperature_offset=20", "sea_level_pressure=99000", "humidity=0.6")
+    flight = fly("catapult", seed=3, overrides=["duration=8", *(f"environment.{key}" for key in day)])
+    environment = Scenario.from_dict(flight.scenario).environment
+    pressure, temperature = still_air(environment, flight.truth["altitude"].to_numpy() - 1500.0)
+    assert np.ptp(flight.truth["altitude"]) > 4.0
+    assert flight.truth["p_static"].to_numpy() == pytest.approx(pressure, abs=0.02)
+    assert flight.truth["temperature"].to_numpy() == pytest.approx(temperature, abs=1e-6)
 
 
 def test_it_flies_with_what_is_on_board_and_replays() -> None:
