@@ -6,6 +6,17 @@ import uavsim
 from uavsim.flight import Flight
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--whole`: what `make certify` adds to the long checks."""
+    parser.addoption("--whole", action="store_true", help="all seeds of the long checks, not a fixed part of them")
+
+
+@pytest.fixture(scope="session")
+def whole(request: pytest.FixtureRequest) -> bool:
+    """Whether all seeds of the long checks are flown; else the first of them, which are always the same."""
+    return bool(request.config.getoption("--whole"))
+
+
 @pytest.fixture(scope="session")
 def catapult() -> Flight:
     """Return the packaged `catapult`, seed 1."""

@@ -302,7 +302,8 @@ class Cosimulation:
     def remarks(self) -> list[str]:
         """What of plant and air deserves a word, a line each; at the end there may be more of it."""
         said = list(getattr(self.plant, "remarks", ()))
-        if not self.scenario.plant.chosen.flies and moves(self.scenario.environment):
+        kind = self.scenario.plant.chosen
+        if not (kind.flies or kind.air) and moves(self.scenario.environment):
             said.append(
                 f"plant.kind = {self.scenario.plant.kind!r} is a rig: wind, turbulence and gusts do not reach it"
             )

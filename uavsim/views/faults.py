@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from sensors.settings import FOREVER
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -30,10 +32,16 @@ def set_faults(scenario: "Scenario") -> list[SetFault]:
     faults: dict[str, Sequence[Fault | PortFault]] = {
         "total port": air.total_port.faults,
         "static port": air.static_port.faults,
+        "both ports": air.port_faults,
         "total sensor": air.total.faults,
         "static sensor": air.static.faults,
+        "thermometer": air.thermometer_faults,
         "accelerometer": scenario.accelerometer.faults,
     }
+    if air.cover_left_on:
+        found.append(SetFault("cover left on", "cover", 0.0, FOREVER))
+    if air.swapped_tubes:
+        found.append(SetFault("tubes swapped", "swap", 0.0, FOREVER))
     for place, of_place in faults.items():
         for fault in of_place:
             name, noun = f"{place} {PARTICIPLES.get(fault.kind, fault.kind)}", NOUNS.get(fault.kind, fault.kind)
