@@ -867,7 +867,8 @@ def test_what_is_not_renewed_holds() -> None:
 
 def test_flags_before_the_first_fault_are_false() -> None:
     fault = {"air_data": {"total_port": {"faults": [{"kind": "blocked", "start": 6.0}]}}}
+    covered = {"air_data": {"cover_left_on": True}}
     flags = (*EVENTS, ("airspeed_fault", 5.0), ("airspeed_recovered", 5.5), ("airspeed_fault", 7.0))
-    for scenario, false in ((fault, 1), ({}, 2)):
+    for scenario, false in ((fault, 1), ({}, 2), (covered, 0)):
         figures = score(made(events=flags, **scenario))["airspeed"]
         assert (figures["flags"], figures["false_flags"]) == (2, false)
