@@ -285,7 +285,7 @@ class PortFault:
         With which the pressure behind the leak goes to that of the bay when the port is blocked, s.
     area : float
         Of the leak's hole over the tube's section: with the port open it says how much of the port's pressure is left
-        at the sensor. 1 is a tube torn off; a slow leak is a pinhole, under 0.01.
+        at the sensor. 1 is a tube torn off; a slow leak is a pinhole, 0.
     water_length : float
         Length of the plug, m.
     below_temperature : float or None
