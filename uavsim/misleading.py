@@ -7,12 +7,12 @@ continuity (RTCA DO-229 gives both words for navigation, and they mean the same 
 What is told holds until something else is told: an airspeed that is not renewed stays as it was, valid or not.
 """
 
-from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from uavsim.set_faults import set_faults
 
 if TYPE_CHECKING:
     from uavsim.judged import Judged
@@ -23,13 +23,12 @@ OFF = 3.0  # m/s from which on a valid airspeed misleads: a tenth of what is flo
 HAZARD = 1.0  # s of it without a break from which on that is a hazard
 LOST = 0.1  # s for which an airspeed that was valid is not, to count as a loss: as the flight computer gives it up
 FLAG = "airspeed_fault"
-FOR_GOOD = ("cover_left_on", "swapped_tubes")  # keys that are a fault from the first second on
 
 
 def figures(flight: "Judged") -> dict[str, Any]:
     """Return the score's figures of integrity and continuity; those of the airspeed None where there is none."""
     flags = [event["t"] for event in flight.events if event["event"] == FLAG]
-    begins = min(fault_starts(flight.scenario), default=np.inf)
+    begins = min((fault.start for fault in set_faults(flight.scenario)), default=np.inf)
     result: dict[str, Any] = {
         "flags": len(flags),
         "false_flags": sum(t < begins for t in flags),
@@ -57,17 +56,3 @@ def spells(time: Array, during: NDArray[np.bool_]) -> list[float]:
     edges = np.flatnonzero(np.diff(np.concatenate(([False], during, [False])).astype(np.int8)))
     last = time.size - 1
     return [float(time[min(end, last)] - time[start]) for start, end in edges.reshape(-1, 2).tolist()]
-
-
-def fault_starts(settings: Any) -> Iterator[float]:
-    """Yield when each fault begins that settings hold anywhere, s: those of lists, and what is always wrong."""
-    if not is_dataclass(settings):
-        return
-    for field in fields(settings):
-        value = getattr(settings, field.name)
-        if field.name in FOR_GOOD and value:
-            yield 0.0
-        elif field.name.endswith("faults"):
-            yield from (fault.start for fault in value)
-        elif is_dataclass(value):
-            yield from fault_starts(value)

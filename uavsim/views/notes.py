@@ -6,7 +6,8 @@ import numpy as np
 
 from uavsim.onboard.airspeed.kinds import is_aided
 from uavsim.scenario import Scenario, scenario_of
-from uavsim.views.faults import noticed, set_faults, told
+from uavsim.set_faults import set_faults
+from uavsim.views.faults import noticed, told
 
 if TYPE_CHECKING:
     from uavsim.flight import Flight
