@@ -30,10 +30,10 @@ lint: $(VENV)/.dev
 	$(BIN)/lint-imports
 
 validate: $(VENV)/.dev
-	$(BIN)/python -m pytest -q -m slow
+	$(BIN)/python -m pytest -q -m "slow and not certify" -n 2 --dist loadfile
 
 certify: $(VENV)/.dev
-	$(BIN)/python -m pytest -q -m certify
+	$(BIN)/python -m pytest -q -m "slow or certify" --whole -n 2 --dist loadfile
 	$(BIN)/python scripts/certify.py --out output/certify --resume --results docs/results --docs
 
 mutants: $(VENV)/.dev
