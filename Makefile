@@ -30,11 +30,13 @@ lint: $(VENV)/.dev
 	$(BIN)/lint-imports
 
 validate: $(VENV)/.dev
-	$(BIN)/python -m pytest -q -m slow
+	$(BIN)/python -m pytest -q -m "slow and not certify" -n 2 --dist loadfile
 
 certify: $(VENV)/.dev
-	$(BIN)/python -m pytest -q -m certify
-	$(BIN)/python scripts/certify.py --out output/certify --resume --results docs/results --docs
+	met=0; \
+	$(BIN)/python scripts/certify.py --out output/certify --resume --results docs/results --docs || met=1; \
+	$(BIN)/python -m pytest -q -m "slow or certify" --whole -n 2 --dist loadfile || met=1; \
+	exit $$met
 
 mutants: $(VENV)/.dev
 	$(BIN)/python scripts/mutants.py --out output/mutants.json

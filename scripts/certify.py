@@ -59,7 +59,7 @@ def flown(one: Set, options: argparse.Namespace) -> list[dict[str, Any]]:
 
     with engine(workers=processes(options.workers, len(tasks))) as crew:
         rows = run(folder, one.name, options.seed if options.seed is not None else one.seed, tasks, crew,
-                   resume=options.resume, progress=tell)  # fmt: skip
+                   resume=options.resume, revision=revision(), progress=tell)  # fmt: skip
     print(file=sys.stderr)
     return rows
 
@@ -77,7 +77,7 @@ def certify(one: Set, options: argparse.Namespace) -> bool:
     if options.results:
         result = {
             "set": one.name,
-            "revision": revision(),
+            "revision": told["revision"],
             "command": f"python scripts/certify.py {one.name} --seed {told['seed']}"
             + (f" --sample {len(rows)}" if len(rows) < one.size else ""),
             "seed": told["seed"],

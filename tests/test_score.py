@@ -874,8 +874,10 @@ def test_what_is_not_renewed_holds() -> None:
 
 def test_flags_before_the_first_fault_are_false() -> None:
     fault = {"air_data": {"total_port": {"faults": [{"kind": "blocked", "start": 6.0}]}}}
-    covered = {"air_data": {"cover_left_on": True}}
     flags = (*EVENTS, ("airspeed_fault", 5.0), ("airspeed_recovered", 5.5), ("airspeed_fault", 7.0))
-    for scenario, false in ((fault, 1), ({}, 2), (covered, 0)):
+    both = {"air_data": {"port_faults": [{"kind": "blocked", "start": 6.0}]}}
+    warm = {"air_data": {"thermometer_faults": [{"kind": "dead", "start": 4.0}]}}
+    covered, swapped = ({"air_data": {key: True}} for key in ("cover_left_on", "swapped_tubes"))
+    for scenario, false in ((fault, 1), ({}, 2), (both, 1), (warm, 0), (covered, 0), (swapped, 0)):
         figures = score(made(events=flags, **scenario))["airspeed"]
         assert (figures["flags"], figures["false_flags"]) == (2, false)

@@ -313,6 +313,14 @@ def test_the_pressure_figure_says_tared_only_of_what_is(flight: Flight, tare: st
     assert any("cover" in text for text in notes) is (tare == "covered")
 
 
+def test_a_prescribed_course_has_a_way_and_a_track() -> None:
+    flown = uavsim.fly("manoeuvres", seed=2, overrides=["duration=7"])
+    for view in (trajectory, track):
+        figure = view.draw(Record(flown))
+        assert figure is not None
+        assert "course" in {str(line.get_label()) for line in figure.axes[0].lines}
+
+
 def test_the_labels_of_many_faults_stay_out_of_the_path_above(flight: Flight) -> None:
     """The trajectory has room for six lines of labels; all the marks are in the other figures."""
     kinds = enumerate(("blocked", "leak", "ice", "water"))

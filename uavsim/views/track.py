@@ -7,7 +7,7 @@ import numpy as np
 from uavsim.views.curves import COLUMNS
 from uavsim.views.figure import BLACK, BLUE, GREY, PHASES, SMALL, inches, label, legend, sheet
 from uavsim.views.record import Record, within
-from uavsim.views.trajectory import flew, shapes
+from uavsim.views.trajectory import flew, parts, shapes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,8 +26,7 @@ def draw(record: Record) -> "Figure | None":
         return None
     figure, ((axes,),) = sheet(record.title, SUBTITLE, (1.0,), size=(WIDTH, HEIGHT), share=False)
     t, north, east = (record.column("truth", name) for name in ("t", "north", "east"))
-    rail = ("rail", t[0], record.phases[0][1] if record.phases else t[-1])
-    for name, first, last in (rail, *record.phases):
+    for name, first, last in parts(record, t):
         y, x = (a[:: max(1, a.size // COLUMNS)] for a in list(within((first, last), t, north, east))[1:])
         axes.plot(x, y, color=PHASES.get(name, GREY), linewidth=2.0, label=name)
     for mark, shape in shapes(record):

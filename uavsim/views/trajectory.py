@@ -62,8 +62,9 @@ def draw(record: Record) -> "Figure | None":
 
 
 def flew(record: Record) -> bool:
-    """Whether there is a way to draw; a flight can diverge before its first row, and a rig has none."""
-    if not record.scenario.plant.chosen.flies:
+    """Whether there is a way to draw; a flight can diverge before its first row, and few rigs have one."""
+    kind = record.scenario.plant.chosen
+    if not (kind.flies or kind.air):
         return False
     return bool(np.isfinite(record.flight.truth["altitude"].to_numpy()).sum() > 1)
 
@@ -99,8 +100,7 @@ def _path(axes: "Axes", record: Record, stretch: Stretch) -> None:
     heading = np.radians(record.scenario.launcher.heading_deg)
     distance = north * np.cos(heading) + east * np.sin(heading)
     height = altitude - record.scenario.environment.ground_elevation
-    rail = ("rail", t[0], record.phases[0][1] if record.phases else t[-1])
-    for name, first, last in (rail, *record.phases):
+    for name, first, last in parts(record, t):
         x, y = (a[:: max(1, a.size // COLUMNS)] for a in list(within((first, last), t, distance, height))[1:])
         axes.plot(x, y, color=PHASES.get(name, GREY), linewidth=2.0, label=name)
     for mark, shape in shapes(record):
@@ -111,6 +111,12 @@ def _path(axes: "Axes", record: Record, stretch: Stretch) -> None:
     shown = (t >= stretch[0]) & (t <= stretch[1])
     _scale(axes, distance[shown], height[shown])
     label(axes, x="distance, m")
+
+
+def parts(record: Record, t: Array) -> list[tuple[str, float, float]]:
+    """Return the parts of the way that are drawn each in its colour: rail and phases; one of a rig."""
+    name = "rail" if record.scenario.plant.chosen.flies else "course"
+    return [(name, float(t[0]), record.phases[0][1] if record.phases else float(t[-1])), *record.phases]
 
 
 def shapes(record: Record) -> Iterator[tuple[Mark, str]]:

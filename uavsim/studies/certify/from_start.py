@@ -3,8 +3,8 @@
 Times are from the truth. A flag is an event `airspeed_fault`; it stands until `airspeed_recovered`. The aircraft is
 launched all the same, so each rule is about what is told:
 
-    cover on           from 0.3 s after the launch on each row is flagged or not valid, a flag comes at the latest 1 s
-                       after the wings are out (after the rail + 4 s if they never come), and blames the total port or
+    cover on,          from 0.3 s after the launch on each row is flagged or not valid, a flag comes at the latest 1 s
+    total shut         after the wings are out (after the rail + 4 s if they never come), and blames the total port or
                        both
     total dead,        no valid airspeed is more than 3 m/s wrong later than 0.3 s after the launch
     static dead
@@ -14,8 +14,9 @@ launched all the same, so each rule is about what is told:
     thermometer        blamed, or not ready with the thermometer named, before the release; of one that sends no number,
                        nothing, or a temperature that cannot be
 
-None may be taken back while it lasts, which is to the end. Half of the flights break at 0 s, half within the first
-1.5 s; every second one flies in gusts.
+A dead sensor repeats its last value, or says the same number of its own from its first reading on; either is flown. A
+cover is there from the beginning, and the tare is taken under it. None may be taken back while it lasts, which is to
+the end. Half of the flights break at 0 s, half within the first 1.5 s; every second pair flies in gusts.
 """
 
 from collections.abc import Callable, Sequence
@@ -151,26 +152,34 @@ class Case:
 
     Attributes
     ----------
-    overrides : tuple of str
-        With ``START`` for the time at which it breaks.
+    ways : tuple of str
+        Overrides, ``KEY=VALUE`` with ``START`` for the time at which it breaks; flights take them in turn.
     judged : callable
     """
 
-    overrides: tuple[str, ...]
+    ways: tuple[str, ...]
     judged: Callable[[Flight], str]
 
 
-def _fault(where: str, fault: str) -> tuple[str, ...]:
-    return (f"{where}=[{{{fault},start=START}}]",)
+def _faults(where: str, *kinds: str) -> tuple[str, ...]:
+    return tuple(f"{where}=[{{{kind},start=START}}]" for kind in kinds)
 
 
+STUCK, SILENT, NO_NUMBER = 'kind="stuck"', 'kind="dropout"', 'kind="invalid"'
+THERMOMETER = partial(named, channel="thermometer")
 CASES: dict[str, Case] = {
-    "cover on": Case(_fault("air_data.total_port.faults", 'kind="blocked"'), cover_on),
-    "total dead": Case(_fault("air_data.total.faults", 'kind="stuck"'), dead),
-    "static dead": Case(_fault("air_data.static.faults", 'kind="stuck"'), dead),
-    "static shut": Case(_fault("air_data.static_port.faults", 'kind="blocked"'), static_shut),
+    "cover on": Case(("air_data.cover_left_on=true",), cover_on),
+    "total shut": Case(_faults("air_data.total_port.faults", 'kind="blocked"'), cover_on),
+    "total dead": Case(_faults("air_data.total.faults", STUCK, 'kind="dead",size=98000'), dead),
+    "static dead": Case(_faults("air_data.static.faults", STUCK, 'kind="dead",size=98000'), dead),
+    "static shut": Case(_faults("air_data.static_port.faults", 'kind="blocked"'), static_shut),
     "accelerometer dead": Case(
-        _fault("accelerometer.faults", 'kind="stuck"'), partial(not_ready, channel="accelerometer")
+        _faults("accelerometer.faults", STUCK, 'kind="dead",size=0'), partial(not_ready, channel="accelerometer")
+    ),
+    "thermometer NaN": Case(_faults("air_data.thermometer_faults", NO_NUMBER), THERMOMETER),
+    "thermometer silent": Case(_faults("air_data.thermometer_faults", SILENT), THERMOMETER),
+    "thermometer out of range": Case(
+        _faults("air_data.thermometer_faults", 'kind="dead",size=500', 'kind="dead",size=100'), THERMOMETER
     ),
 }
 SIZE = EACH * len(CASES)
@@ -185,9 +194,9 @@ def task(number: int, seed: int) -> Task:
     drawn = float(Streams(seed, number)("certify.start").uniform(0.01, LATEST))
     start = 0.0 if flight % 2 == 0 else round(drawn, 3)
     gusts = flight // 2 % 2 == 1
-    broken = tuple(one.replace("START", f"{start:g}") for one in case.overrides)
+    way = case.ways[flight // 4 % len(case.ways)].replace("START", f"{start:g}")
     levels = {"case": name, "start": start, "wind": "gusty" if gusts else "calm"}
-    overrides = (*(GUSTY if gusts else ()), "duration=20", *broken)
+    overrides = (*(GUSTY if gusts else ()), "duration=20", way)
     return Task(number, "catapult", overrides, seed, levels, rule=partial(hold, case.judged))
 
 

@@ -41,6 +41,8 @@ class Record:
         What is flown.
     resume
         Whether what is there is taken up.
+    revision
+        Of the sources, as people name it.
 
     Raises
     ------
@@ -48,10 +50,12 @@ class Record:
         What is there was flown by other software, or is another set; one line.
     """
 
-    def __init__(self, folder: Path, name: str, seed: int, tasks: Sequence[Flyable], *, resume: bool) -> None:
+    def __init__(
+        self, folder: Path, name: str, seed: int, tasks: Sequence[Flyable], *, resume: bool, revision: str
+    ) -> None:
         self.folder, self.tasks = folder, tasks
-        self._about: dict[str, Any] = {"set": name, "seed": seed, "flights": len(tasks), "identity": identity()}
-        self._about["versions"] = versions()
+        self._about: dict[str, Any] = {"set": name, "seed": seed, "flights": len(tasks), "revision": revision}
+        self._about |= {"versions": versions(), "identity": identity()}
         self._rows: dict[int, Row] = {}
         self._spent = 0.0
         if resume and (folder / ABOUT).is_file():
@@ -127,6 +131,7 @@ def run(
     crew: Crew,
     *,
     resume: bool = False,
+    revision: str = "unknown",
     progress: Progress | None = None,
 ) -> list[Row]:
     """Fly what is missing of a set and return all its rows.
@@ -141,7 +146,7 @@ def run(
         Somebody wants to end; what was finished is written.
     """
     with StandingPlace(out, resume=resume) as place:
-        record = Record(place.folder, name, seed, tasks, resume=resume)
+        record = Record(place.folder, name, seed, tasks, resume=resume, revision=revision)
         missing, started = record.missing, time.monotonic()
         written = [started]
 
