@@ -129,12 +129,12 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
     by_total, by_static, by_warmth = airdata.airspeed_gradient(total=total, static=c.static, temperature=c.temperature)
     impact, mach = total - c.static, airdata.mach(total=total, static=np.full(speed.shape, c.static))
     density = c.static / (airdata.GAS_CONSTANT_DRY_AIR * c.temperature)
-    head = known_of_head(air)
+    head, parts = known_of_head(air), (air.total.description(), air.static.description())
     one, other = head.total.noise_sd, head.static.noise_sd
     pressures = {
         "noise": np.hypot(by_total * one, by_static * other),
         "tare": by_total * _tare_sd(air, c, density),
-        "drift": by_total * head.walk * sqrt(c.since_tare),
+        "drift": by_total * hypot(*(part.walk for part in parts)) * sqrt(c.since_tare),
         "warming": by_total * _warming_sd(air, c),
         "position": by_total * impact * _position(air, c, mach),
         "lag": by_total * _lag(head.total, head.static, c, density, speed),
@@ -145,9 +145,9 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
     terms = {name: stop * sd for name, sd in pressures.items()}
     terms["thermometer"] = by_warmth * head.temperature_sd
     terms = {name: terms[name] for name in TERMS}
-    parts = [f"{part.name} {part.mode.name}" for part in (air.total.description(), air.static.description())]
+    names = [f"{part.name} {part.mode.name}" for part in parts]
     all_of_them = np.sqrt(sum(np.square(sd) for sd in terms.values()))
-    return Budget((parts[0], parts[1]), c, speed, terms, np.asarray(all_of_them))
+    return Budget((names[0], names[1]), c, speed, terms, np.asarray(all_of_them))
 
 
 def _tare_sd(air: AirDataSettings, c: Conditions, density: float) -> float:
