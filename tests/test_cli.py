@@ -24,7 +24,7 @@ from uavsim.scenario import packaged
 
 FILES = {"scenario.toml", "score.json", "events.json", *(f"{name}.parquet" for name in UNITS)}
 SHORT = ("--set", "duration=6", "--set", "requirements=[]", "--set", "expect=timeout", "--no-plots")
-PLOTS = {"plots/launch.png", "plots/pressure.png", "plots/airspeed.png", "plots/trajectory.png"}
+PLOTS = {"plots/launch.png", "plots/pressure.png", "plots/airspeed.png", "plots/trajectory.png", "plots/track.png"}
 COMMANDS = [command.callback.__name__ for command in cli.app.registered_commands if command.callback]
 
 

@@ -40,6 +40,7 @@ Q = 'key="launch.latency",statistic="p95"'
             "exposure is missing; it must be 'armed'",
         ),
         ('key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="flight"', "must be 'armed'"),
+        ('key="airspeed.hazard",statistic="rate_per_hour",maximum=1,exposure="armed"', "must be 'flight'"),
         (
             'key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="x"',
             "must be 'armed' or 'flight'",

@@ -17,7 +17,7 @@ from uavsim import airdata, fly
 from uavsim.cosim import replay
 from uavsim.plants.course.legs import LegSettings
 from uavsim.plants.plant import Run
-from uavsim.plants.rigs.flight_path import FlightPath, FlightPathSettings
+from uavsim.plants.rigs.flight_path import FlightPath, FlightPathSettings, still_air
 from uavsim.plants.settings import EnvironmentSettings, LauncherSettings
 from uavsim.scenario import Scenario
 from uavsim.spread.read import unread
@@ -104,7 +104,7 @@ def test_work_becomes_energy(push: str) -> None:
 def test_a_bungee_is_a_quarter_of_a_swing() -> None:
     """s'' = A (1 - s/S), level: v = √(A S) at the end, after ½π √(S/A), but for the rise of 30 ms."""
     rail = LauncherSettings(elevation_deg=0.0, stroke=10.0, rise=0.001)
-    c = truth(FlightPathSettings(push="bungee"), replace(RUN, launcher=rail))
+    c = truth(FlightPathSettings(push="bungee"), replace(RUN, launcher=rail, duration=4.0))
     level = 8.0 * G
     exit_row = int(np.flatnonzero(c["rail_s"] >= 10.0)[0])
     assert exit_row / 1000.0 - START == pytest.approx(0.5 * pi * sqrt(10.0 / level), abs=0.002)
@@ -113,12 +113,12 @@ def test_a_bungee_is_a_quarter_of_a_swing() -> None:
 
 def test_a_motor_pushes_for_its_time_and_a_catapult_for_its_stroke() -> None:
     rail = LauncherSettings(peak_specific_force_g=3.0, elevation_deg=30.0)
-    c = truth(FlightPathSettings(push="motor", burn=7.0, legs=()), replace(RUN, launcher=rail))
+    c = truth(FlightPathSettings(push="motor", burn=7.0), replace(RUN, launcher=rail, duration=10.0))
     pushing = np.flatnonzero(c["fx"] > 1.5 * G) / 1000.0 - START
     assert pushing[0] == pytest.approx(0.015, abs=0.003)
     assert pushing[-1] == pytest.approx(6.97, abs=0.003)
     assert c["airspeed"][-1] == pytest.approx((3.0 - sin(radians(30.0))) * G * 6.955, rel=0.01)
-    c = truth(FlightPathSettings(legs=()))
+    c = truth(FlightPathSettings(), replace(RUN, duration=4.0))
     left = int(np.flatnonzero(c["rail_s"] >= 5.2)[0])
     assert c["fx"][left - 10] > 0.0
     assert c["fx"][left + 10] < 0.5 * G
@@ -144,8 +144,8 @@ def test_a_coordinated_turn() -> None:
     """χ' = g tan μ/V, 1/cos μ of load, and no force to the side, in any mean wind."""
     air = EnvironmentSettings(wind_speed=8.0, wind_from_deg=200.0, wind_profile="uniform")
     legs = (LegSettings(4.0, airspeed=40.0, climb_deg=0.0), LegSettings(2.0, bank_deg=60.0))
-    c = truth(FlightPathSettings(legs=legs), replace(RUN, environment=air))
-    late = slice(15_000, 35_000)
+    c = truth(FlightPathSettings(legs=legs), replace(RUN, environment=air, duration=15.0))
+    late = slice(9_500, 14_000)
     assert np.gradient(c["heading"])[late] * 1000.0 == pytest.approx(G * tan(radians(60.0)) / 40.0, rel=1e-4)
     assert np.hypot(c["fx"], c["fz"])[late] == pytest.approx(2.0 * G, rel=1e-4)
     assert np.abs(c["fy"][late]).max() < 1e-6
@@ -176,6 +176,17 @@ def test_air_and_pressures_agree() -> None:
     assert on_rail == pytest.approx(6.0 * np.log(2.0 / 0.04572) / np.log(6.096 / 0.04572), rel=0.1)
 
 
+def test_the_air_at_rest_is_that_in_which_the_aircraft_flies() -> None:
+    """By height, 0.02 Pa and 1e-6 K: JSBSim's atmosphere of a warm, humid day of low pressure at 1500 m."""
+    day = ("ground_elevation=1500", "temperature_offset=20", "sea_level_pressure=99000", "humidity=0.6")
+    flight = fly("catapult", seed=3, overrides=["duration=8", *(f"environment.{key}" for key in day)])
+    environment = Scenario.from_dict(flight.scenario).environment
+    pressure, temperature = still_air(environment, flight.truth["altitude"].to_numpy() - 1500.0)
+    assert np.ptp(flight.truth["altitude"]) > 4.0
+    assert flight.truth["p_static"].to_numpy() == pytest.approx(pressure, abs=0.02)
+    assert flight.truth["temperature"].to_numpy() == pytest.approx(temperature, abs=1e-6)
+
+
 def test_it_flies_with_what_is_on_board_and_replays() -> None:
     flight = fly("manoeuvres", seed=3, overrides=["duration=9"])
     names = [event["event"] for event in flight.events]
@@ -186,6 +197,27 @@ def test_it_flies_with_what_is_on_board_and_replays() -> None:
     again = replay(flight)
     assert again.events == flight.events
     assert again.estimate.equals(flight.estimate)
+
+
+def test_the_wash_of_the_propeller_at_full_throttle_is_at_both_ports() -> None:
+    """At η = 1: p_t + e_t q_c at the total port, p_s + (1 + e_s) c₀ q_c at the static one, of a BMP581."""
+    quiet = [
+        f"air_data.{name}.{key}"
+        for name in ("total", "static")
+        for key in ("preset=bmp581", "noise_scale=0", "unit=ideal")
+    ]
+    wash = ("total_port.slipstream=0.2", "static_port.slipstream=0.5", "static_port.error=0.04")
+    legs = "plant.flight_path.legs=[{duration=2,airspeed=40,climb_deg=0},{duration=1,throttle=1}]"
+    still = [f"air_data.{name}.errors.{what}=0" for name in ("total", "static") for what in ("drift", "random_walk")]
+    flight = fly(
+        "manoeuvres", seed=3, overrides=[*quiet, *still, *(f"air_data.{key}" for key in wash), legs, "duration=9"]
+    )
+    true, read = flight.truth.iloc[-1], flight.air_data.iloc[-1]
+    q = true["p_total"] - true["p_static"]
+    assert true["throttle"] == 1.0
+    assert q > 900.0
+    assert read["p_total"] - true["p_total"] == pytest.approx(0.2 * q, abs=0.1)
+    assert read["p_static"] - true["p_static"] == pytest.approx(1.5 * 0.04 * q, abs=0.1)
 
 
 @pytest.mark.parametrize(

@@ -569,16 +569,16 @@ def test_finite_in_finite_out(
         assert (rows[:, 0] <= high + part.resolution).all()
 
 
-@pytest.mark.parametrize(("share", "low", "high"), [(0.0, -0.1, 0.1), (0.6, 0.5, 0.7), (1.0, 1.0, 1.0)])
+@pytest.mark.parametrize(("share", "low", "high"), [(0.0, -0.22, 0.22), (0.6, 0.46, 0.74), (1.0, 1.0, 1.0)])
 def test_parts_of_one_batch_drift_alike_with_temperature(share, low, high):
-    """Correlation of the pair's coefficients over 1000 heads: ± 0.1 is three standard deviations of none."""
+    """Correlation of the pair's coefficients over 200 heads, ± 3 (1 - s²)/√200."""
     chosen = AirDataSettings(batch=share)
-    heads = [AirDataHead(chosen, Streams(seed)) for seed in range(1000)]
+    heads = [AirDataHead(chosen, Streams(seed)) for seed in range(200)]
     total = np.array([head.total.offset_tc for head in heads])
     static = np.array([head.static.offset_tc for head in heads])
     part = chosen.total.description()
     assert low - 1e-9 <= np.corrcoef(total, static)[0, 1] <= high + 1e-9
     for tc in (total, static):
         assert np.abs(tc).max() <= part.offset_tc_limit
-        assert tc.std() == pytest.approx(part.offset_tc_sd, rel=0.08)
+        assert tc.std() == pytest.approx(part.offset_tc_sd, rel=0.2)
     assert heads[3].total.offset == AirDataHead(AirDataSettings(), Streams(3)).total.offset  # other draws stay

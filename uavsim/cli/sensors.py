@@ -31,6 +31,12 @@ def sensors(
     mapping: Annotated[
         str | None, typer.Option("--map", metavar="OURS=THEIRS,...", help="Your columns, as t=time,fx=ax*9.80665.")
     ] = None,
+    budget: Annotated[
+        bool, typer.Option("--budget", help="Error budget of the airspeed of a pair, in place of the bench.")
+    ] = False,
+    override: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Of the budget: a scenario's key.")
+    ] = None,
     out: Out = None,
     overwrite: Overwrite = False,
     no_plots: NoPlots = False,
@@ -44,7 +50,14 @@ def sensors(
     Example: uavsim sensors bmp390
 
     Example: uavsim sensors adxl345 --hours 1 --compare log.csv --map t=time,fx=ax,fy=ay,fz=az
+
+    Example: uavsim sensors bmp280 --budget --set air_data.tare=open
     """
+    if budget:
+        _budget(name, override or [], mode, noise_scale, out, overwrite=overwrite, plots=not no_plots, as_json=as_json)
+        return
+    if override:
+        raise typer.BadParameter("sets keys of the budget: give --budget, too", param_hint="--set")
     from uavsim.views import datasheets, documents, terminal
 
     if name is None:
@@ -83,3 +96,43 @@ def sensors(
         return
     datasheets.print_bench(measured)
     terminal.say(f"written to {place.target}")
+
+
+def _budget(
+    name: str | None,
+    override: list[str],
+    mode: str | None,
+    noise_scale: float,
+    out: Path | None,
+    *,
+    overwrite: bool,
+    plots: bool,
+    as_json: bool,
+) -> None:
+    """Print the error budget of a pair, by default the one of the packaged scenarios; write it where that is asked."""
+    from sensors.catalogue import pressure_sensor
+    from uavsim.scenario import load_scenario
+    from uavsim.studies.error_budget import of_scenario
+    from uavsim.views import documents, error_budget, terminal
+
+    keys = []
+    if name is not None:
+        with user_input():
+            pressure_sensor(name)
+        keys += [f"air_data.{port}.preset={name}" for port in ("total", "static")]
+    if mode is not None:
+        keys += [f"air_data.{port}.mode={mode}" for port in ("total", "static")]
+    if noise_scale != 1.0:
+        keys += [f"air_data.{port}.noise_scale={noise_scale:g}" for port in ("total", "static")]
+    with user_input():
+        found = of_scenario(load_scenario("catapult", overrides=[*keys, *override]))
+    if as_json:
+        document(documents.plain(found.numbers()))
+    else:
+        error_budget.print_budget(found)
+    if out is None:
+        return
+    with folder(out, "sensors-budget", overwrite=overwrite) as place:
+        error_budget.save_budget(found, place.folder, plots=plots)
+    if not as_json:
+        terminal.say(f"written to {place.target}")

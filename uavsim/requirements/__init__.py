@@ -14,7 +14,8 @@ A single flight is judged by what asks each flight, `every`; the others are judg
 **A flight without a value** (null in the score, NaN in a row) never helps. It meets no bound of `every`. Of a
 `probability` it counts against what is asked: as no event under `at_least`, as an event under `at_most`. Of a quantile
 it counts as the worst value, +inf under a maximum, -inf under a minimum. A `mean` over flights of which one has no
-value does not exist: the requirement stays undecided, and the number of such flights is said.
+value does not exist: the requirement stays undecided, and the number of such flights is said. Of a `rate_per_hour` it
+counts as one event, unless it has no exposure.
 
 **Exposure** is in hours, of one flight:
 
@@ -39,8 +40,14 @@ Exposure = Literal["armed", "flight"]
 
 PACKAGED = Path(__file__).resolve().parent
 OUTCOME = "outcome"  # the one key of the score that is no number and may be asked for
-COUNTS = ("launch.false_detections",)  # numbers of events, which a rate may be of
-ARMED_COUNTS = ("launch.false_detections",)  # those that only count while the detector is armed
+COUNTS: dict[str, Exposure] = {
+    "launch.false_detections": "armed",
+    "airspeed.flags": "flight",
+    "airspeed.false_flags": "flight",
+    "airspeed.losses": "flight",
+    "airspeed.hazard": "flight",
+}
+"""Numbers of events, which a rate may be of, each with the hours that it counts in."""
 STATISTICS = ("every", "probability", "p50", "p95", "p99", "mean", "rate_per_hour")
 QUANTILE = re.compile(r"p([0-9]{1,2}(?:\.[0-9]{1,3})?)")
 BOUNDS = ("equals", "minimum", "maximum", "at_least", "at_most", "exposure")
@@ -264,8 +271,15 @@ def _check_event(r: Requirement) -> str:
         return f"{where}: equals is for outcome; a number has minimum and maximum"
     if not counts and r.minimum is None and r.maximum is None:
         return f"{where}: needs minimum or maximum, or both, to say which values are the event"
-    wrong = counts and r.key in ARMED_COUNTS and r.exposure != "armed"
-    return f"{where}: exposure must be 'armed': it counts nothing after the release" if wrong else ""
+    return f"{where}{_wrong_hours(r)}" if counts and r.exposure != COUNTS[r.key] else ""
+
+
+def _wrong_hours(r: Requirement) -> str:
+    """Say why a count is not one over the hours that are given."""
+    why = (
+        "counts nothing after the release" if COUNTS[r.key] == "armed" else "is of a flight, not of the wait before it"
+    )
+    return f": exposure must be {COUNTS[r.key]!r}: it {why}"
 
 
 def _check_outcome(r: Requirement) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.flight import Flight
-from uavsim.score import RUN
+from uavsim.judged import RUN
 from uavsim.score_keys import PHASES
 from uavsim.studies.airspeed_flights import LEAD, NORMAL_95, bound, course, together
 
