@@ -11,8 +11,8 @@ launched all the same, so each rule is about what is told:
     static shut        the static port is blamed before the aircraft is 10 m above its place of release, and until then
                        the bar is honest: no valid airspeed is off by more than 3.5 standard deviations
     accelerometer dead not ready before the release, with the accelerometer named
-    thermometer        blamed, or not ready with the thermometer named, before the release; of one that sends no number,
-                       nothing, or a temperature that cannot be
+    thermometer        blamed within 5 s of its breaking, or not ready with the thermometer named; of one that sends no
+                       number, nothing (its last value stays), or a temperature that cannot be
 
 A dead sensor repeats its last value, or says the same number of its own from its first reading on; either is flown. A
 cover is there from the beginning, and the tare is taken under it. None may be taken back while it lasts, which is to
@@ -40,6 +40,7 @@ AFTER_WINGS = 1.0  # s
 FOLDED = 4.0  # s after the rail's end
 NAMED_WITHIN = 10.0  # m
 HONEST = 3.5  # standard deviations
+NAMED_AFTER = 5.0  # s
 LATEST = 1.5  # s: the release is not before 1.6 s
 SHOWN = 6  # flights of each case
 
@@ -101,12 +102,11 @@ def not_ready(flight: Flight, channel: str) -> str:
 
 def named(flight: Flight, channel: str) -> str:
     """Return what is wrong with a flight whose part must be blamed, or be the reason of not being ready."""
-    release = flight.score["launch"]["release_time"]
-    if any(e["channel"] == channel and e["t"] <= release for e in blames(flight)):
+    first = next((e["t"] for e in blames(flight) if e["channel"] == channel), None)
+    if first is not None and first <= LATEST + NAMED_AFTER:
         return ""
-    late = next((e["t"] for e in blames(flight) if e["channel"] == channel), None)
     found = not_ready(flight, channel)
-    return found if late is None else found and f"blamed {late - release:.2f} s after the release"
+    return found and (found if first is None else f"blamed at {first:.2f} s")
 
 
 def blames(flight: Flight) -> list[dict[str, Any]]:
