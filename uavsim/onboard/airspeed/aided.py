@@ -635,10 +635,11 @@ class AidedFilter(Estimator):
             return nan
         noise = self._static_variance
         if self._wrong:
-            _, off, unknown = self._off()
-            noise += unknown
-            if not self._wind.on:
-                reading -= off
+            if self._wind.on:
+                noise += self._wind.unknown(energy.v, energy.p, self._air.heat)
+            else:
+                _, off, unknown = self._off()
+                reading, noise = reading - off, noise + unknown
         if ports.static.faulty:
             ports.hear_static(self._t, energy, at, reading, reading - energy.p - density * energy.v * ahead * energy.s)
             return nan
