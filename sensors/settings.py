@@ -350,7 +350,7 @@ class TotalPortSettings:
         What becomes of the port.
     """
 
-    probe: Literal["ideal", "plain", "bevelled", "kiel"] = "ideal"
+    probe: Literal["ideal", "plain", "bevelled", "kiel"] = "plain"
     slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
     tube: TubeSettings = field(default_factory=TubeSettings)
     faults: tuple[PortFault, ...] = ()
@@ -365,13 +365,13 @@ class StaticPortSettings:
     Attributes
     ----------
     error : float
-        c0.
+        c0. The default is a boom on the nose, one and a half diameters of the fuselage ahead of it: +0.02.
     error_alpha : float
         cα, 1/rad.
     error_alpha2 : float
-        cαα, 1/rad².
+        cαα, 1/rad². The default is of holes around a tube in cross-flow: 0.5 … 0.7 of the −1 of potential flow.
     error_beta2 : float
-        cββ, 1/rad².
+        cββ, 1/rad², as that.
     error_mach2 : float
         cM.
     slipstream : float
@@ -382,10 +382,10 @@ class StaticPortSettings:
         What becomes of the port.
     """
 
-    error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.0
+    error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.02
     error_alpha: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
-    error_alpha2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
-    error_beta2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
+    error_alpha2: Annotated[float, Interval(ge=-100.0, le=100.0)] = -0.55
+    error_beta2: Annotated[float, Interval(ge=-100.0, le=100.0)] = -0.55
     error_mach2: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
     slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
     tube: TubeSettings = field(default_factory=TubeSettings)

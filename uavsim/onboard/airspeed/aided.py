@@ -701,6 +701,9 @@ class AidedFilter(Estimator):
             self.ports.total.carry(self.energy, dt, gained, variance, self._air.density)
         else:
             self.energy.predict(dt, gained, variance, self._air.density, self._force > self._on_rail)
+            if self._wind.on:  # the model climbs by the airspeed, the aircraft up its rail by that over the ground
+                energy = self.energy
+                energy.shift_static(self._air.density * energy.s * (energy.v - self._wind.gained(energy.v)) * dt)
 
     def _go(self, to: float, dt: float) -> tuple[float, float]:
         """Go on to a later time; return ∫ f_x dt, m/s, and the variance that gust and accelerometer add to V's."""
@@ -744,10 +747,11 @@ class AidedFilter(Estimator):
             return nan
         noise = self._static_variance
         if self._wrong:
-            _, off, unknown = self._off()
-            noise += unknown
-            if not self._wind.on:
-                reading -= off
+            if self._wind.on:
+                noise += self._wind.unknown(energy.v, energy.p, self._air.heat)
+            else:
+                _, off, unknown = self._off()
+                reading, noise = reading - off, noise + unknown
         if ports.static.faulty:
             ports.hear_static(self._t, energy, at, reading, reading - energy.p - density * energy.v * ahead * energy.s)
             return nan
@@ -800,6 +804,8 @@ class AidedFilter(Estimator):
             return nan
         on_rail = self._wind.on
         if on_rail:
+            if self._wrong:
+                variance += self._wind.unknown(energy.v, energy.p, air.heat)
             nis = self._wind.total(energy, tared, variance, pushed, air.heat)
         else:
             nis = energy.total(tared, variance, pushed, air.heat)
@@ -870,6 +876,8 @@ class AidedFilter(Estimator):
         share = self._temperature_share * speed / air.temperature
         if self._wrong:
             position = self._position_share * speed
+            if self._wind.on and speed > SLOWEST:
+                position = sqrt(self._wind.unknown(energy.v, static, air.heat)) / (air.density * speed)
             share = sqrt(share * share + position * position)
         if self._warmed_share > 0.0:
             warmed = self._warmed_share * speed * speed / air.heat * speed
