@@ -407,7 +407,17 @@ class AidedFilter(Estimator):
         test, energy, density = self._first_climb, self.energy, self._air.density
         if self.ports.total.faulty or self.ports.static.faulty:
             test.open, test.hidden = False, 0.0
-        elif test.add(reading, self._t - before, energy.v, self._u, density, self._push_end.lasts):
+        elif test.add(
+            reading,
+            self._t - before,
+            energy.v,
+            self._u,
+            density,
+            self._push_end.lasts,
+            ground=self._speed_since_launch(),
+            position=self._position,
+            position_sd=2.0 * self._position_share,
+        ):
             self.ports.never_moved(self._t, energy, test.rest, test.lost, density)
 
     def _not_risen(self, kind: str) -> None:
