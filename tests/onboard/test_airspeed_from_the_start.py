@@ -73,7 +73,7 @@ def test_a_pair_that_differs_by_more_than_its_parts_allow_is_told():
 
 @pytest.mark.parametrize("cover", ["blocked", "cover"])
 def test_a_cover_left_on_is_known_in_the_stroke(cover):
-    """Flagged within 0.3 s of the launch, no airspeed valid, never taken back; one that follows the static pressure, too."""
+    """Flagged within 0.3 s of the launch, no airspeed valid, never taken back."""
     for seed in (9700, 9701):
         readings = fly(FLIGHT, seed)
         if cover == "blocked":

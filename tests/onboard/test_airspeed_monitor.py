@@ -16,6 +16,7 @@ from uavsim.onboard.airspeed import AidedFilter, AidedSettings, EstimatorSetting
 from uavsim.onboard.airspeed.aided import COASTED
 from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
 from uavsim.onboard.airspeed.frozen import FrozenTest
+from uavsim.onboard.airspeed.monitor import CALM as CALM_LEVEL
 from uavsim.onboard.airspeed.monitor import FROZEN, PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.watch import TotalWatch

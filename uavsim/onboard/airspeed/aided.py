@@ -698,8 +698,12 @@ class AidedFilter(Estimator):
         if size != 0.0:
             energy.widen_bias(size * size)
             ports.total.open_bias(self.time, size * size)
-        elif to > shock.due and shock.offset(energy.b, energy.bb):
-            ports.tell(self._t, "airspeed_fault", "accelerometer", "offset")
+        elif to > shock.due:
+            kind = shock.judge(energy.b, energy.bb)
+            if kind == "offset":
+                ports.tell(self._t, "airspeed_fault", "accelerometer", kind)
+            elif kind == "felt":
+                ports.total.close_bias()
 
     def _advance(self, to: float) -> None:
         """Predict to a later time; an earlier one leaves the filter where it is."""

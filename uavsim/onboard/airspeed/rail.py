@@ -4,7 +4,7 @@
     invalid  nothing but NaN for so long
     range    nothing but readings at or beyond the ends of the range
     stuck    the same number for longer than its noise allows (`uavsim.onboard.repeats`)
-    offset   in the tare the pair differs by more than `FAR` standard deviations of what its descriptions allow, and than a
+    offset   in the tare the pair differs by more than `FAR` standard deviations of what the parts allow, and than a
              storm makes where it is open
 
 What a sensor has read itself is never taken for normal. That a port is shut or covered no pressure at rest can tell: a
