@@ -35,15 +35,18 @@ from uavsim import airdata
 from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
-from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.flow_angles import FlowAngles
+from uavsim.onboard.airspeed.interface import NoiseModel, within
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.membrane_push import MembranePush
 from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.onset import ONE_SIDED, Onset
+from uavsim.onboard.airspeed.paper import TRANSONIC
 from uavsim.onboard.airspeed.ports import PERSISTENT, Ports
+from uavsim.onboard.airspeed.rail_wind import AGO, RailWind
 from uavsim.onboard.airspeed.rest_force import RestForce
-from uavsim.onboard.airspeed.rest_wind import Row
+from uavsim.onboard.airspeed.rest_wind import Row, rest_difference
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
@@ -98,6 +101,7 @@ VALID = 8.0  # σ_V from which on an airspeed is valid: 2 V* of the pressures' l
 # m/s, σ_V up to which an airspeed without its total port is valid; beyond it the airspeed hold falls back to a safe
 # throttle. By hand; docs/faults.md says how long that lasts
 COASTED = 2.0
+LAW_ENDS = 0.2 * TRANSONIC**2  # V² over 7 R T, beyond which no airspeed is valid: a² = 0.2 · 7 R T
 MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
 
 # -- when the filter has diverged --------------------------------------------------------------------------------------
@@ -135,22 +139,75 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
-        "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_stamps",
-        "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps", "_sudden", "_t",
-        "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance",
-        "_u", "_unfolding", "_w", "_waiting", "energy", "flying", "news", "ports", "time",
+        "_air",
+        "_angles",
+        "_apart",
+        "_coldest",
+        "_fastest",
+        "_flight_force",
+        "_force",
+        "_gained",
+        "_grown",
+        "_head",
+        "_longest",
+        "_noise",
+        "_on_rail",
+        "_onset",
+        "_plain",
+        "_plain_tare",
+        "_position",
+        "_position_share",
+        "_push",
+        "_push_variance",
+        "_read",
+        "_rest",
+        "_rows",
+        "_scale_variance",
+        "_settings",
+        "_stamps",
+        "_static_age",
+        "_static_ends",
+        "_static_spikes",
+        "_static_variance",
+        "_static_within",
+        "_steady_from",
+        "_steps",
+        "_sudden",
+        "_t",
+        "_tare",
+        "_tare_end",
+        "_temperature_share",
+        "_throttle",
+        "_total_age",
+        "_total_ends",
+        "_total_spikes",
+        "_total_variance",
+        "_total_within",
+        "_u",
+        "_unfolding",
+        "_w",
+        "_waiting",
+        "_warmed",
+        "_warmed_share",
+        "_warmest",
+        "_wind",
+        "_wind_known",
+        "_wrong",
+        "energy",
+        "flying",
+        "news",
+        "ports",
+        "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
-        settings = replace(settings, aided=with_offset(settings.aided, noise.accelerometer_offset_sd))
-        aided = settings.aided
+        aided = self._plain = settings.aided
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
-        self._flight_force = MOST_FLIGHT_FORCE if aided.flight_force is None else aided.flight_force
-        self._flight_force += FARTHEST * noise.accelerometer_offset_sd
+        self._believe_offset(noise.accelerometer_offset_sd)
+        self._gained.end_at(*noise.accelerometer_range)
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._push, self._force = MembranePush(noise, self._gained, self._rest), 0.0
         self._rows: deque[Row] = deque(maxlen=ROWS)
@@ -160,24 +217,34 @@ class AidedFilter(Estimator):
         self._static_variance = max(noise.static_sd, MODEL) ** 2
         self._scale_variance = noise.accelerometer_scale_sd**2
         self._temperature_share = 0.5 * noise.temperature_sd
+        self._warmed_share = 0.5 * noise.thermometer_recovery_sd
         self._on_rail = aided.on_rail
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
+        self._coldest, self._warmest = within(noise.temperature_range, 0.0, LEAST_TEMPERATURE, MOST_TEMPERATURE)
         self._longest = jump(noise.head_rate)
         self._stamps = Stamps(self._longest)
         self._total_ends, self._static_ends = Conversions(self._longest), Conversions(self._longest)
         sd = sqrt(max(self._total_variance, self._static_variance))
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
+        self._total_within = within(noise.total_range, noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._static_within = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
+        self._wind, self._angles, self._head = RailWind(aided, noise.head), FlowAngles(aided), noise.head
+        self._wind_known = self._wind.declared or self._tare_end == -inf
+        self._wrong, self._throttle, self._position_share = not noise.head.none, 0.0, 0.0
+        self._position = noise.head.error / (1.0 - noise.head.error)
+        self._warmed = 0.2 * noise.thermometer_recovery
         self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
-        self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)
+        self.ports = Ports(self._settings.aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
         self.flying = self._apart = False
         self._steps, self._read = 0, -inf
         self.time = self._t = -inf
-        self._tare, self._push_variance, self._steady_from = 0.0, 0.0, inf
-        self._u = self._w = 0.0
+        self._tare = self._plain_tare = 0.0
+        self._push_variance, self._steady_from = 0.0, inf
+        self._u = self._w = self._grown = 0.0
         self.energy = self._begin(-inf)
 
     # -- readings ----------------------------------------------------------------------------------------------------
@@ -220,7 +287,7 @@ class AidedFilter(Estimator):
     def tidy(self) -> None:
         """Watch the ports by what was read last; the filter still stands where it stood then."""
         try:
-            self.ports.judge(self._t, self.energy, self.time, self._u)
+            self.ports.judge(self._t, self.energy, self.time, self._u + self._grown)
         except (ArithmeticError, ValueError):  # as in `step`
             self._fall_back(self._t, "diverged")
 
@@ -258,6 +325,21 @@ class AidedFilter(Estimator):
 
     # -- the filter's life -------------------------------------------------------------------------------------------
 
+    def rested(self, offset: tuple[float, float, float], sd: tuple[float, float, float]) -> None:
+        """Know the offset of f_x and f_z by what was found on the rail; see `Estimator`."""
+        noise = self._noise = replace(self._noise, accelerometer_offset_sd=sd[0], lift_offset_sd=sd[2])
+        self._believe_offset(sd[0])
+        low, high = noise.accelerometer_range
+        self._gained.end_at(low - offset[0], high - offset[0])
+        self.ports.believe(noise, self._settings.aided)
+
+    def _believe_offset(self, sd: float) -> None:
+        """Let b hold an offset of f_x of this standard deviation, m/s², beside the angle of attack."""
+        plain = self._plain
+        self._settings = replace(self._settings, aided=with_offset(plain, sd))
+        most = MOST_FLIGHT_FORCE if plain.flight_force is None else plain.flight_force
+        self._flight_force = most + FARTHEST * sd
+
     def launched(self, t: float) -> None:
         """Start the filter before a launch that has been recognised at `t`, and bring it up to date."""
         if self.flying or not -LATEST < t < LATEST:
@@ -276,8 +358,14 @@ class AidedFilter(Estimator):
             self._fall_back(t, "diverged")
         self._rows.clear()
 
+    def throttle(self, t: float, value: float) -> None:
+        """Know what the propeller blows with."""
+        self._throttle = value
+
     def unfolding(self, t: float) -> None:
         """Trust the integral of f_x less for a while."""
+        if self._wind.on:
+            self._leave_rail()
         self._gained.bound(self._flight_force)
         self._unfolding.begin(t)
 
@@ -293,18 +381,57 @@ class AidedFilter(Estimator):
         static = self._waiting.static.value
         known = LEAST_PRESSURE <= static <= MOST_PRESSURE
         self._tare, tare_variance = self._waiting.tare()
+        self._plain_tare = self._tare
         self._air.begin(self._waiting.temperature)
         self._unfolding.forget()
+        if not tare_variance > 0.0:
+            tare_variance = self._noise.difference_sd**2  # nobody has tared the pair
         rest = self._rest.result(start)
-        speed_sd = self._onset.look(self._rows, start, (self._tare, tare_variance), static / self._air.gas)
+        at, density = (static, static / self._air.gas) if known else (airdata.STANDARD_PRESSURE, 0.0)
+        tied = 0.0
+        if self._wind_known:
+            along, along_sd, tare_variance, tied = self._look_at_wind(start, at, density, tare_variance)
+        else:
+            self._wind.forget()
+            along_sd = self._onset.look(self._on_the_rail(start), (self._tare, tare_variance), density)
+            along = self._onset.wind
         core = self._core(
-            speed=(self._onset.wind, speed_sd),
+            speed=(along, along_sd),
             rest=rest,
-            static=(static, AROUND) if known else (airdata.STANDARD_PRESSURE, ANYWHERE),
+            static=(at, AROUND if known else ANYWHERE),
             difference_sd=sqrt(tare_variance),
         )
+        core.tie_difference(tied)
         self._air.ground = core.p
+        self._angles.forget()
         return core
+
+    def _on_the_rail(self, end: float) -> tuple[float, float] | None:
+        """Return the pair's mean difference at rest until `end`, s, the head being open, and its variance."""
+        each = self._total_variance + self._static_variance
+        return rest_difference(self._rows, start=self._tare_end, end=end, each=each)
+
+    def _look_at_wind(
+        self, start: float, static: float, density: float, tare_variance: float
+    ) -> tuple[float, float, float, float]:
+        """Return u₀, its standard deviation, the variance of d and its covariance with u₀; see `rail_wind`."""
+        air, noise = self._air, self._noise
+        self._onset.know()
+        tared = noise.covered and self._tare_end > -inf
+        seen = self._on_the_rail(start)
+        if tared and seen is not None:
+            seen = seen[0] - self._tare, seen[1] + tare_variance
+        elif not tared and self._tare_end > -inf:
+            seen = self._waiting.tare()
+            seen = seen if seen[1] > 0.0 else None
+        gusts = air.gust * max(self._wind.speed_declared, SLOWEST) * AGO
+        along, sd, off, variance, tied = self._wind.begin(
+            seen, tared=tared, air=(static, air.heat, gusts), density=density
+        )
+        if tared or seen is None:
+            return along, sd, tare_variance, tied
+        self._tare = off
+        return along, sd, variance + noise.walk**2 * AGO, tied
 
     def _begin_in_flight(self, t: float) -> None:
         """Begin anew at `t`, s: V by the next total pressure, both ports believed, climb and bias not known."""
@@ -316,6 +443,8 @@ class AidedFilter(Estimator):
             difference_sd=sqrt(self._waiting.tare()[1]),
         )
         core.leave_rail(0.5 * aided.slope_rate**2 * aided.slope_time)
+        self._wind.forget()
+        self._angles.forget()
         self.energy, self._onset.wind = core, 0.0
         self._unfolding.forget()
         self._start(t - OLDEST, -inf, t + STEADY)
@@ -367,15 +496,23 @@ class AidedFilter(Estimator):
             return None
         ports, air, energy = self.ports, self._air, self.energy
         if ports.seen_total is not None or ports.seen_static is not None:
-            ports.judge(self._t, energy, self.time, self._u)
+            ports.judge(self._t, energy, self.time, self._u + self._grown)
         before, self._t = self._t, t
-        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
+        if self._coldest <= temperature <= self._warmest:
+            if self._warmed > 0.0:
+                temperature /= 1.0 + 5.0 * self._warmed * energy.v * energy.v / air.heat
             if temperature != air.temperature:
                 air.warm(temperature)
             air.measured = True
         else:
             temperature = nan
         air.at(energy.p, energy.s)
+        low, high = self._total_within
+        if not low <= p_total <= high:
+            p_total = nan
+        low, high = self._static_within
+        if not low <= p_static <= high:
+            p_static = nan
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
         total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
@@ -385,7 +522,9 @@ class AidedFilter(Estimator):
         nis_total, nis_static = self._take(p_total, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
         if total and static and temperature > 0.0:
-            excess = (p_total - self._tare - p_static) / p_static
+            difference = p_total - self._plain_tare - p_static
+            static_port = p_static - self._position * difference  # as the pressures alone have it (`paper`)
+            excess = (p_total - self._plain_tare - static_port) / static_port
             raw = isentropic_speed(excess, air.heat) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
@@ -427,13 +566,19 @@ class AidedFilter(Estimator):
         gained, variance = self._go(to, dt)
         pushed = self._pushed(t_total)
         tared = p_total - self._tare - self._noise.acceleration * pushed
+        lift, unknown = self._gained.lift(), 0.0
+        if self._wrong:
+            if lift == lift:
+                self._angles.lift = lift
+            above, off, unknown = self._off()
+            tared, p_static = tared - above, p_static - off
         nis_static, nis_total = energy.fly(
             dt,
             gained,
             variance,
             density,
             p_static,
-            self._static_variance,
+            self._static_variance + unknown,
             density * energy.v * (to - at),
             tared - pushed * energy.k,
             self._total_variance + pushed * pushed * self._push_variance,
@@ -441,7 +586,7 @@ class AidedFilter(Estimator):
         )
         ports = self.ports
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
-        ports.seen_static = p_static, at, self._gained.lift()
+        ports.seen_static = p_static, at, lift
         ports.seen_total = tared, nis_total
         return nis_total, nis_static
 
@@ -455,14 +600,28 @@ class AidedFilter(Estimator):
             self.ports.total.carry(self.energy, dt, gained, variance, self._air.density)
         else:
             self.energy.predict(dt, gained, variance, self._air.density, self._force > self._on_rail)
+            if self._wind.on:  # the model climbs by the airspeed, the aircraft up its rail by that over the ground
+                energy = self.energy
+                energy.shift_static(self._air.density * energy.s * (energy.v - self._wind.gained(energy.v)) * dt)
 
     def _go(self, to: float, dt: float) -> tuple[float, float]:
         """Go on to a later time; return ∫ f_x dt, m/s, and the variance that gust and accelerometer add to V's."""
-        v = self.energy.v
+        wind = self._wind
+        v = self.energy.v if not wind.on else wind.speed(self.energy.v)
         u, w = self._gained.at(to)
         gained = u - self._u
         self._force = gained / dt - self._rest.mean
+        if self._air.growth:
+            grown = self._air.growth * (wind.gained(self.energy.v) if wind.on else v) * dt
+            gained += grown
+            self._grown += grown
         variance = self._air.gust * (v if v > SLOWEST else SLOWEST) * dt
+        if wind.on:
+            wind.advance(dt, variance, self.energy)
+            if self._force > self._on_rail:
+                wind.pushed = True
+            elif wind.pushed or to > self._onset.patience:
+                self._leave_rail()
         if w > self._w:  # else readings have come late, and w has counted already that they might be lost
             variance = variance + w - self._w
             if self._gained.torn(w - self._w, dt):
@@ -477,16 +636,26 @@ class AidedFilter(Estimator):
         ahead = self.time - at
         if not -OLDEST < ahead < OLDEST:
             return nan
+        noise = self._static_variance
+        if self._wrong:
+            if self._wind.on:
+                noise += self._wind.unknown(energy.v, energy.p, self._air.heat)
+            else:
+                _, off, unknown = self._off()
+                reading, noise = reading - off, noise + unknown
         if ports.static.faulty:
             ports.hear_static(self._t, energy, at, reading, reading - energy.p - density * energy.v * ahead * energy.s)
             return nan
-        nis = energy.static(reading, self._static_variance, density * energy.v * ahead)
+        if self._wind.on:
+            nis = self._wind.static(energy, reading, noise, density * energy.v * ahead, self._air.heat)
+        else:
+            nis = energy.static(reading, noise, density * energy.v * ahead)
         ports.misses = 0 if energy.taken else ports.misses + 1
         if self.time > self._steady_from:
             ports.seen_static = reading, at, self._gained.lift()
         elif ports.misses >= PERSISTENT:  # these are no spikes, and it is too early for a fault: the filter is wrong
             energy.widen_static(energy.innovation * energy.innovation)
-            energy.static(reading, self._static_variance, 0.0)
+            energy.static(reading, noise, 0.0)
             ports.misses = 0
         return nis
 
@@ -504,18 +673,46 @@ class AidedFilter(Estimator):
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * air.gust * abs(energy.v) * behind
         tared = reading - self._tare - self._noise.acceleration * pushed
+        if self._wrong and not self._wind.on:
+            tared -= self._off()[0]
         if self.ports.total.faulty:
             self.ports.hear_total(self._t, energy, end, reading, tared, variance)
             return nan
-        nis = energy.total(tared, variance, pushed, air.heat)
+        on_rail = self._wind.on
+        if on_rail:
+            if self._wrong:
+                variance += self._wind.unknown(energy.v, energy.p, air.heat)
+            nis = self._wind.total(energy, tared, variance, pushed, air.heat)
+        else:
+            nis = energy.total(tared, variance, pushed, air.heat)
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.widen_speed((energy.innovation / slope) ** 2)
-        if energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
+        if not on_rail and energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
             self.ports.seen_total = tared, nis
         return nis
+
+    def _leave_rail(self) -> None:
+        """Be told that the push is over: from here on the filter's airspeed is along the path."""
+        self._wind.leave(self.energy)
+        self._angles.leave(self.time, self._wind.side)
+
+    def _off(self) -> tuple[float, float, float]:
+        """What both ports are off by in flight, Pa: total, static; and the variance of what is not known, Pa²."""
+        energy, air, head, angles = self.energy, self._air, self._head, self._angles
+        v, p = energy.v, energy.p
+        impact = isentropic(v, p, air.heat) - p
+        side2, side2_sd = angles.side(self.time, v)
+        down, down_sd = angles.down(v, air.density)
+        across = side2 + down * down
+        total, static = head.shares(
+            sqrt(1.0 - across) if across < 1.0 else 0.0, sqrt(side2), down, 5.0 * v * v / air.heat, self._throttle
+        )
+        share = head.spread(side2, side2_sd, down, down_sd, self._throttle)
+        self._position_share = 0.5 * share
+        return impact * (total - 1.0), impact * static, (impact * share) ** 2
 
     def _pushed(self, end: float) -> float:
         """Specific force over the total pressure's conversion that ends then; a change of it widens b."""
@@ -538,17 +735,28 @@ class AidedFilter(Estimator):
         else:
             dt, u, w = 0.0, self._u, self._w
         speed, variance, static = energy.foretell(dt, u - self._u, air.density)
+        if self._wind.on:
+            speed, variance = self._wind.told(speed, variance)
         variance += air.gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, t)
         if speed < 0.0:  # noqa: PLR1730
             speed = 0.0
         share = self._temperature_share * speed / air.temperature
+        if self._wrong:
+            position = self._position_share * speed
+            if self._wind.on and speed > SLOWEST:
+                position = sqrt(self._wind.unknown(energy.v, static, air.heat)) / (air.density * speed)
+            share = sqrt(share * share + position * position)
+        if self._warmed_share > 0.0:
+            warmed = self._warmed_share * speed * speed / air.heat * speed
+            share = sqrt(share * share + warmed * warmed)
         sd = sqrt(max(variance, 0.0) + share * share)
         total = isentropic(speed, static, air.heat)
         ports = self.ports
         valid = (
             VALID * sd <= speed <= self._fastest
+            and speed * speed <= LAW_ENDS * air.heat
             and air.measured
             and (sd < COASTED or not ports.total.faulty)
             and not ports.static.faulty  # without it V and the climb are hardly told apart

@@ -75,6 +75,10 @@ class Ports:
         self.news: list[News] = []
         self.begin(())
 
+    def believe(self, noise: NoiseModel, aided: AidedSettings) -> None:
+        """Be told what is believed from the next `begin` on: the rail has shown the accelerometer's offset."""
+        self._noise, self._aided = noise, aided
+
     def begin(self, rows: Iterable[tuple[float, ...]]) -> None:
         """Believe both ports, and begin to watch them.
 
