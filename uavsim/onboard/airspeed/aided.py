@@ -795,6 +795,15 @@ class AidedFilter(Estimator):
             self._not_risen(kind)
         return bool(kind)
 
+    def _measure(self, tared: float, variance: float, pushed: float) -> float:
+        """Correct the filter by a total pressure, Pa, of a variance, Pa²; on the rail it has the side wind in it."""
+        energy, heat = self.energy, self._air.heat
+        if not self._wind.on:
+            return energy.total(tared, variance, pushed, heat)
+        if self._wrong:
+            variance += self._wind.unknown(energy.v, energy.p, heat)
+        return self._wind.total(energy, tared, variance, pushed, heat)
+
     def _take_total(self, reading: float, end: float) -> float:
         energy, air = self.energy, self._air
         behind = self.time - (end - self._total_age)
@@ -817,12 +826,7 @@ class AidedFilter(Estimator):
             self.ports.hear_total(self._t, energy, end, reading, tared, variance)
             return nan
         on_rail = self._wind.on
-        if on_rail:
-            if self._wrong:
-                variance += self._wind.unknown(energy.v, energy.p, air.heat)
-            nis = self._wind.total(energy, tared, variance, pushed, air.heat)
-        else:
-            nis = energy.total(tared, variance, pushed, air.heat)
+        nis = self._measure(tared, variance, pushed)
         if energy.taken:
             self._fresh = self._t
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
