@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from references.manoeuvres import LAUNCH, NOISE, Flight, believed, fly, run, spoil
 
-from uavsim.onboard.airspeed import AidedFilter
+from uavsim.onboard.airspeed import AidedFilter, first_climb
 from uavsim.onboard.airspeed.rail import RailCheck
 from uavsim.onboard.rail_offset import RailOffset
 from uavsim.onboard.readiness import Readiness
@@ -117,6 +117,17 @@ def test_a_static_port_that_was_shut_is_named_in_the_first_climb():
         rows = flown.rows[(flown.rows[:, 0] > LAUNCH + 0.3) & (flown.rows[:, 0] < at)]
         assert np.mean(np.abs(rows[:, 4]) < 1.96 * rows[:, 2]) > 0.95
         assert not flown.rows[flown.rows[:, 0] > at + 0.02, 3].any()
+
+
+def test_the_doubt_of_a_live_static_port_costs_no_bar(monkeypatch):
+    """What it might hide, weighed by its odds: the bar of the stroke and the climb is that of a port nobody doubts."""
+    for seed in (9810, 9811):
+        readings, bars = fly(Flight(duration=6.0), seed), []
+        for prior in (first_climb.PRIOR, first_climb.LEAST_ODDS):
+            monkeypatch.setattr(first_climb, "PRIOR", prior)
+            bars.append(run(readings).after(0.1)[:80, 2])
+        assert np.median(bars[0] / bars[1]) < 1.1
+        assert np.max(bars[0] / bars[1]) < 1.5
 
 
 @pytest.mark.parametrize(("how", "kind"), [("silent", "silent"), ("nan", "invalid")])

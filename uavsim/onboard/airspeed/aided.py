@@ -407,7 +407,17 @@ class AidedFilter(Estimator):
         test, energy, density = self._first_climb, self.energy, self._air.density
         if self.ports.total.faulty or self.ports.static.faulty:
             test.open, test.hidden = False, 0.0
-        elif test.add(reading, self._t - before, energy.v, self._u, density, self._push_end.lasts):
+        elif test.add(
+            reading,
+            self._t - before,
+            energy.v,
+            self._u,
+            density,
+            self._push_end.lasts,
+            ground=self._speed_since_launch(),
+            position=self._position,
+            position_sd=2.0 * self._position_share,
+        ):
             self.ports.never_moved(self._t, energy, test.rest, test.lost, density)
 
     def _not_risen(self, kind: str) -> None:
@@ -705,6 +715,9 @@ class AidedFilter(Estimator):
             self.ports.total.carry(self.energy, dt, gained, variance, self._air.density)
         else:
             self.energy.predict(dt, gained, variance, self._air.density, self._force > self._on_rail)
+            if self._wind.on:  # the model climbs by the airspeed, the aircraft up its rail by that over the ground
+                energy = self.energy
+                energy.shift_static(self._air.density * energy.s * (energy.v - self._wind.gained(energy.v)) * dt)
 
     def _go(self, to: float, dt: float) -> tuple[float, float]:
         """Go on to a later time; return ∫ f_x dt, m/s, and the variance that gust and accelerometer add to V's."""
@@ -748,10 +761,11 @@ class AidedFilter(Estimator):
             return nan
         noise = self._static_variance
         if self._wrong:
-            _, off, unknown = self._off()
-            noise += unknown
-            if not self._wind.on:
-                reading -= off
+            if self._wind.on:
+                noise += self._wind.unknown(energy.v, energy.p, self._air.heat)
+            else:
+                _, off, unknown = self._off()
+                reading, noise = reading - off, noise + unknown
         if ports.static.faulty:
             ports.hear_static(self._t, energy, at, reading, reading - energy.p - density * energy.v * ahead * energy.s)
             return nan
@@ -781,6 +795,15 @@ class AidedFilter(Estimator):
             self._not_risen(kind)
         return bool(kind)
 
+    def _measure(self, tared: float, variance: float, pushed: float) -> float:
+        """Correct the filter by a total pressure, Pa, of a variance, Pa²; on the rail it has the side wind in it."""
+        energy, heat = self.energy, self._air.heat
+        if not self._wind.on:
+            return energy.total(tared, variance, pushed, heat)
+        if self._wrong:
+            variance += self._wind.unknown(energy.v, energy.p, heat)
+        return self._wind.total(energy, tared, variance, pushed, heat)
+
     def _take_total(self, reading: float, end: float) -> float:
         energy, air = self.energy, self._air
         behind = self.time - (end - self._total_age)
@@ -803,10 +826,7 @@ class AidedFilter(Estimator):
             self.ports.hear_total(self._t, energy, end, reading, tared, variance)
             return nan
         on_rail = self._wind.on
-        if on_rail:
-            nis = self._wind.total(energy, tared, variance, pushed, air.heat)
-        else:
-            nis = energy.total(tared, variance, pushed, air.heat)
+        nis = self._measure(tared, variance, pushed)
         if energy.taken:
             self._fresh = self._t
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
@@ -874,6 +894,8 @@ class AidedFilter(Estimator):
         share = self._temperature_share * speed / air.temperature
         if self._wrong:
             position = self._position_share * speed
+            if self._wind.on and speed > SLOWEST:
+                position = sqrt(self._wind.unknown(energy.v, static, air.heat)) / (air.density * speed)
             share = sqrt(share * share + position * position)
         if self._warmed_share > 0.0:
             warmed = self._warmed_share * speed * speed / air.heat * speed
