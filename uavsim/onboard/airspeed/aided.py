@@ -36,6 +36,7 @@ from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.flow_angles import FlowAngles
+from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.interface import NoiseModel, within
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
@@ -368,6 +369,10 @@ class AidedFilter(Estimator):
             self._leave_rail()
         self._gained.bound(self._flight_force)
         self._unfolding.begin(t)
+        if self.flying:  # slow, it has to pitch up, and f_x is turned further from the path than b grants
+            turned = GRAVITY * self._angles.needed(self.energy.v, self._air.density)
+            self.energy.widen_bias(turned * turned)
+            self.ports.total.jump(self.time, turned * turned)
 
     def rearmed(self, t: float) -> None:
         """Go back to waiting: the launch was none."""
@@ -638,6 +643,10 @@ class AidedFilter(Estimator):
             return nan
         noise = self._static_variance
         if self._wrong:
+            if self.time < self._steady_from and self.time > self._unfolding.end > -inf:  # the wings are out
+                lift = self._gained.lift()
+                if lift == lift:
+                    self._angles.lift = lift
             if self._wind.on:
                 noise += self._wind.unknown(energy.v, energy.p, self._air.heat)
             else:
