@@ -253,7 +253,7 @@ class EnergyFilter(EnergyModel):
         v, p = self.v, self.p
         self.b = 0.0
         self.predict(dt, gained, variance, density, False)
-        self.v = v + gained - dt * bias + (p - static) / (density * max(v, 1.0))
+        self.v = v + gained - dt * bias + (p - static) / (density * max(v, 10.0))
         self.b = bias
         self._part()
         return p
