@@ -800,6 +800,8 @@ class AidedFilter(Estimator):
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, to)
         lift = self._lift = self._gained.lift()
+        if lift == lift and to > self._unfolding.end > -inf:  # the wings are out
+            self._angles.lift = lift
         if self.time > self._steady_from and lift == lift:
             turned, doubt = pulled(lift, v)
             gained -= turned * dt
@@ -814,10 +816,6 @@ class AidedFilter(Estimator):
             return nan
         noise = self._static_variance
         if self._wrong:
-            if self.time < self._steady_from and self.time > self._unfolding.end > -inf:  # the wings are out
-                lift = self._gained.lift()
-                if lift == lift:
-                    self._angles.lift = lift
             if self._wind.on:
                 noise += self._wind.unknown(energy.v, energy.p, self._air.heat)
             else:
