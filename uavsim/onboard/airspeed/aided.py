@@ -788,7 +788,8 @@ class AidedFilter(Estimator):
             self._grown += grown
         variance = self._air.gust * (v if v > SLOWEST else SLOWEST) * dt
         if wind.on:
-            wind.advance(dt, variance, self.energy)
+            railed = self._force > self._on_rail
+            wind.advance(self.energy, dt, gained, variance, self._air.density, railed)
             if self._force > self._on_rail:
                 wind.pushed = True
             elif wind.pushed or to > self._onset.patience:
