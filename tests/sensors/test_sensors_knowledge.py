@@ -194,6 +194,7 @@ AIR: dict[str, Named] = {
     **of_pressure("total"),
     **of_pressure("static"),
     "static.errors.thermometer": (3.0, *more("head.temperature_sd", 8.0 * BAROMETER.temperature_offset_sd**2)),
+    "thermometer_recovery": (0.8, *is_("head.thermometer_recovery", 0.8)),
     "calibration": ("none", *is_("head.ports.position_sd", 0.02)),
     "total_port.probe": ("kiel", *is_("head.ports.limit", math.radians(40.0))),
     "total_port.slipstream": (0.3, *is_("head.ports.total_slipstream", 0.3)),
