@@ -37,7 +37,7 @@ Column. The gas in the tube feels the specific force f, and its weight acts like
 Port. g is its opening (1 … 0), τ₀ the lag of tube and hole, y what the tube's end has without a leak, b the bay's
 pressure. What a leak leaves of y - b is σ: air flows through port, tube and leak, one behind the other,
 
-    p_∞ = b + σ (y - b),   |y - b| = R Q + K (1/g² + 1/a²) Q²,   σ |y - b| = K Q²/a²,   K = ρ/(2 C_d² A²)
+    p_∞ = b + σ (y - b) g T/(g T + τ₀),   |y - b| = R Q + K (1/g² + 1/a²) Q²,   σ |y - b| = K Q²/a²,   K = ρ/(2 C_d² A²)
 
 with R = 128 μL/(πd⁴) of the tube (Poiseuille), sharp-edged holes of area g A and a A (A = πd²/4, Q = C_d A √(2Δp/ρ),
 C_d = 0.61: Idelchik, Handbook of Hydraulic Resistance, diagram 4-18; ISO 5167-2). A tube torn off, a = 1, halves y - b
@@ -46,11 +46,11 @@ where it is short, and leaves less where it is long and narrow. Into the volume 
     p' = (p_∞ - p)/T_p,   1/T_p = 1/T + g/(τ₀ (1 - g))
 
 Blocked is g = 0: held, or with a leak gone to b with T. Open, g = 1: p_∞ at once. T and a are two numbers of one leak:
-one hole as wide as the tube empties what is behind a shut port in milliseconds, and a leak that takes a second is a
-pinhole, which the open port does not feel. Ice takes g from 1 to 0 as ½(1 + cos πs), s the share of its duration that
-has passed, or of which the air was such that it grows. Water adds a plug of length l: its weight ρ_w f·r l/|r| to the
-column, and its inertia and friction to those of the tube, a₂ += 4/3 ρ_w l C/A and a₁ += 128 μ_w l C/(πd⁴),
-C = (V + V_t/2)/(γp).
+what takes a second behind a shut port is a pinhole of laminar flow, a = 0, which an open port all but hides, T ≫ τ₀;
+a hole as wide as the tube empties that volume in milliseconds. Ice takes g from 1 to 0 as ½(1 + cos πs), s the share of
+its duration that has passed, or of which the air was such that it grows. Water adds a plug of length l: its weight
+ρ_w f·r l/|r| to the column, and its inertia and friction to those of the tube, a₂ += 4/3 ρ_w l C/A and
+a₁ += 128 μ_w l C/(πd⁴), C = (V + V_t/2)/(γp).
 """
 
 import cmath
@@ -378,7 +378,9 @@ class Line:
                 return end
             if opening == 0.0:
                 return self._last
-        share = self.share(end - bay, opening, area) if leak else 1.0
+        share = 1.0
+        if leak:
+            share = self.share(end - bay, opening, area) * opening / (opening + self._hole * leak)
         level, before = bay + share * (end - bay), self._bay + share * (self._end - self._bay)
         rate = leak + (opening / (self._hole * (1.0 - opening)) if opening < 1.0 else inf)
         lagging = (level - before) / (rate * self._dt)  # exact for a level that is linear within the step

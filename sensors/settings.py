@@ -14,6 +14,7 @@ from sensors.accelerometer_description import AccelerometerDescription, Accelero
 from sensors.pressure_description import PressureDescription, PressureErrors
 from sensors.unit import Unit
 
+Calibration = Literal["unit", "none"]
 Tare = Literal["covered", "open", "none"]
 Phase = Literal["always", "waiting", "stroke", "flight"]
 Band = Annotated[float, Interval(gt=0.0, lt=500.0)]  # Hz, below half of the plant's 1 kHz
@@ -285,7 +286,7 @@ class PortFault:
         With which the pressure behind the leak goes to that of the bay when the port is blocked, s.
     area : float
         Of the leak's hole over the tube's section: with the port open it says how much of the port's pressure is left
-        at the sensor. 1 is a tube torn off; a slow leak is a pinhole, under 0.01.
+        at the sensor. 1 is a tube torn off; a slow leak is a pinhole, 0.
     water_length : float
         Length of the plug, m.
     below_temperature : float or None
@@ -349,7 +350,7 @@ class TotalPortSettings:
         What becomes of the port.
     """
 
-    probe: Literal["ideal", "plain", "bevelled", "kiel"] = "ideal"
+    probe: Literal["ideal", "plain", "bevelled", "kiel"] = "plain"
     slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
     tube: TubeSettings = field(default_factory=TubeSettings)
     faults: tuple[PortFault, ...] = ()
@@ -357,18 +358,20 @@ class TotalPortSettings:
 
 @dataclass(frozen=True, slots=True)
 class StaticPortSettings:
-    """The static port and its position error, (p_read - p_s)/q_c = c0 + cα α + cαα α² + cββ β² + cM M².
+    """The static port and its position error, (p_read - p_s)/q_c = c0 + cα z + cαα z² + cββ y² + cM M².
+
+    z = sin α cos β and y = sin β, at small angles α and β.
 
     Attributes
     ----------
     error : float
-        c0.
+        c0. The default is a boom on the nose, one and a half diameters of the fuselage ahead of it: +0.02.
     error_alpha : float
         cα, 1/rad.
     error_alpha2 : float
-        cαα, 1/rad².
+        cαα, 1/rad². The default is of holes around a tube in cross-flow: 0.5 … 0.7 of the −1 of potential flow.
     error_beta2 : float
-        cββ, 1/rad².
+        cββ, 1/rad², as that.
     error_mach2 : float
         cM.
     slipstream : float
@@ -379,10 +382,10 @@ class StaticPortSettings:
         What becomes of the port.
     """
 
-    error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.0
+    error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.02
     error_alpha: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
-    error_alpha2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
-    error_beta2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
+    error_alpha2: Annotated[float, Interval(ge=-100.0, le=100.0)] = -0.55
+    error_beta2: Annotated[float, Interval(ge=-100.0, le=100.0)] = -0.55
     error_mach2: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
     slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
     tube: TubeSettings = field(default_factory=TubeSettings)
@@ -423,6 +426,10 @@ class AirDataSettings:
         Length of the mean that the tare is, s.
     cover_off : float
         Time before release at which the tare ends and the cover, if there is one, is taken off, s.
+    calibration : {"unit", "none"}
+        What is known of both ports' errors. "unit": a calibration of this head found them, with an error of its own (a
+        thousandth of the impact pressure, and a tenth of what each angle and the propeller make); what the filter knows
+        is taken off. "none": nothing but their size is known.
     position : (x, y, z)
         Of the head from the aircraft's EYEPOINT, body axes, m; its pressures come from the flow there. This is the tube
         on the nose of fw8. A rig has its head where the stream is.
@@ -443,6 +450,7 @@ class AirDataSettings:
     thermometer_faults: tuple[Fault, ...] = ()
     batch: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     position: tuple[Arm, Arm, Arm] = (0.65, 0.0, 0.0)
+    calibration: Calibration = "unit"
     acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
 

@@ -75,12 +75,15 @@ HELD = (
     "flight_computer.motor_delay=0.2", "flight_computer.stroke_end_level_g=1.3",
     "flight_computer.stroke_end_mean=0.014",
     "flight_computer.stroke_end_hold=0.026", "flight_computer.safe_throttle=0.62", "flight_computer.loss_time=0.16",
+    "flight_computer.rail_elevation_deg=16.6", "flight_computer.rail_elevation_sd_deg=0.8",
+    "flight_computer.rail_roll_deg=0.4",
 )  # fmt: skip
 BELIEVED = (
     "mismatch.total_noise=1.2", "mismatch.static_noise=0.9", "mismatch.drift=1.5", "mismatch.lag=0.8",
     "mismatch.acceleration=0.9", "mismatch.acceleration_sd=1.3", "mismatch.accelerometer_noise=1.1",
     "mismatch.accelerometer_scale=1.2", "mismatch.accelerometer_lag=1.1", "mismatch.temperature=1.4",
-    "mismatch.gust=1.3", "mismatch.accelerometer_offset=1.2",
+    "mismatch.gust=1.3", "mismatch.accelerometer_offset=1.2", "mismatch.wind=0.9", "mismatch.position=0.95",
+    "mismatch.position_sd=1.5",
     "estimator.wind_sd=4", "estimator.aided.bias_time=4", "estimator.aided.gust_length=170",
     "estimator.aided.slope_time=4", "estimator.aided.replay=0.25", "estimator.vapour_fraction=0.01",
 )  # fmt: skip
@@ -106,6 +109,9 @@ AIDED = (
     "estimator.aided.gust_floor=0.3",
     "estimator.aided.gust_height=25", "estimator.aided.slope_rate=0.9", "estimator.aided.bias_sd=0.45",
     "estimator.aided.bias_rate=0.003", "estimator.aided.static_walk=0.4", "estimator.aided.on_rail=25",
+    "estimator.aided.shear_along=0.4", "estimator.aided.launch_height=1.7", "estimator.aided.rail_wind_along=0.5",
+    "estimator.aided.rail_wind_side=-0.4", "estimator.aided.rail_wind_down=0.1", "estimator.aided.rail_wind_sd=0.6",
+    "estimator.aided.lift_slope=9.1", "estimator.aided.lift_zero=-0.06", 'air_data.calibration="none"',
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
     "mismatch.acceleration_calibration=0.5", "flight_computer.speed_gain_min=12",
     "aircraft.properties.ap/gain/pitch=0.3", "aircraft.mass_factor=1.06", "aircraft.cg_shift=-0.008",

@@ -386,6 +386,13 @@ def test_every_criterion_that_is_not_met_is_told() -> None:
     ]
 
 
+def test_a_speed_that_nobody_on_board_knows_is_said() -> None:
+    slow = setting("airspeed", 25.0, 8.0)
+    lost = (*EVENTS, ("airspeed_lost", 6.5))
+    assert score(made(change=slow, events=lost))["reason"].endswith("; on board it was given up at 6.50 s")
+    assert "given up" not in score(made(change=slow, events=(*lost, ("airspeed_back", 7.0))))["reason"]
+
+
 def test_a_cruise_that_is_expected_needs_no_reason() -> None:
     assert score(made())["reason"] is None
 

@@ -23,7 +23,7 @@ from weakref import proxy
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
-from uavsim.beliefs import believed_air, believed_noise, calibrated
+from uavsim.beliefs import NO_CALIBRATION, Calibration, believed_air, believed_noise, calibrated
 from uavsim.criteria import TOUCHED
 from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
@@ -33,6 +33,8 @@ from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
+from uavsim.onboard.rail_offset import RailOffset
+from uavsim.onboard.readiness import Readiness
 from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import STEP_RATES, Plant, Run
@@ -61,8 +63,8 @@ class Draws:
     release_time: float  # s
     force_factor: float
     plant_seed: int
-    calibration: tuple[float, float] = (0.0, 0.0)
-    """What a calibration of both membranes along body x found of their sensitivity to acceleration, Pa/(m/s²)."""
+    calibration: Calibration = NO_CALIBRATION
+    """What a calibration of the units that fly found."""
 
 
 def draw(scenario: Scenario, index: int | None = None) -> Draws:
@@ -124,18 +126,19 @@ class Onboard:
     which of the two it came from.
     """
 
-    def __init__(self, scenario: Scenario, release_time: float, calibration: tuple[float, float]) -> None:
+    def __init__(self, scenario: Scenario, release_time: float, calibration: Calibration) -> None:
         rate = scenario.accelerometer.description().rate
         self._release_time = release_time
         self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
+        noise = believed_noise(scenario, calibration)
         self.computer = FlightComputer(
             scenario.flight_computer,
             self._detector,
-            airspeed.build(
-                believed_air(scenario), believed_noise(scenario, calibration), tare_window(scenario, release_time)
-            ),
+            airspeed.build(believed_air(scenario), noise, tare_window(scenario, release_time)),
             rate,
             scenario.launch_axis,
+            rail := RailOffset(noise),
+            Readiness(noise, rail),
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
         self.estimates: list[Estimate] = []

@@ -127,8 +127,15 @@ def _airspeed(flight: Judged) -> Criterion:
     return Criterion(
         met,
         f"{words}: {off[row]:+.2f} m/s off the set {target:g} m/s at {when:.2f} s, "
-        f"at most ±{SPEED_TOLERANCE:g} m/s over the last {LAST:g} s",
+        f"at most ±{SPEED_TOLERANCE:g} m/s over the last {LAST:g} s{'' if met else _given_up(flight)}",
     )
+
+
+def _given_up(flight: Judged) -> str:
+    """Say since when nobody on board has known the airspeed, if nobody does at the end."""
+    told = [event for event in flight.events if event["event"] in ("airspeed_lost", "airspeed_back")]
+    lost = told and told[-1]["event"] == "airspeed_lost"
+    return f"; on board it was given up at {told[-1]['t']:.2f} s" if lost else ""
 
 
 def _bank(flight: Judged) -> Criterion:

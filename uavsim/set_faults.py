@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sensors.settings import FOREVER
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -27,6 +25,8 @@ class SetFault:
 
 def set_faults(scenario: "Scenario") -> list[SetFault]:
     """Return the faults of all sensors and ports in the order of their start."""
+    from sensors.settings import FOREVER  # late: a score that is read needs no sensors
+
     found = []
     air = scenario.air_data
     faults: dict[str, Sequence[Fault | PortFault]] = {

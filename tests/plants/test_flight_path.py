@@ -140,6 +140,14 @@ def test_the_load_of_a_manoeuvre_is_reached_and_turns_the_path() -> None:
     assert c["fx"][start + 9000] == pytest.approx(expected, abs=0.02)
 
 
+def test_a_leg_that_the_record_ends_in_is_flown_as_far() -> None:
+    legs = (LegSettings(2.0, airspeed=60.0, climb_deg=0.0), LegSettings(6.0, load_g=1.5))
+    whole = truth(FlightPathSettings(legs=legs), replace(RUN, duration=12.0))
+    cut = truth(FlightPathSettings(legs=legs), replace(RUN, duration=6.0))
+    for name in ("fx", "fz", "altitude", "airspeed"):
+        assert cut[name][:-2] == pytest.approx(whole[name][:5999], abs=1e-9)
+
+
 def test_a_coordinated_turn() -> None:
     """χ' = g tan μ/V, 1/cos μ of load, and no force to the side, in any mean wind."""
     air = EnvironmentSettings(wind_speed=8.0, wind_from_deg=200.0, wind_profile="uniform")

@@ -54,7 +54,12 @@ def sensors(
     Example: uavsim sensors bmp280 --budget --set air_data.tare=open
     """
     if budget:
-        _budget(name, override or [], mode, noise_scale, out, overwrite=overwrite, plots=not no_plots, as_json=as_json)
+        bench = {"--compare": compare, "--map": mapping, "--rate": rate, "--range-g": range_g, "--filter": low_pass}
+        for option, value in bench.items():
+            if value is not None:
+                raise typer.BadParameter("is for the bench, which --budget is in place of", param_hint=option)
+        settings = {"preset": name, "mode": mode, "iir": iir, "noise_scale": noise_scale}
+        _budget(settings, override or [], out, overwrite=overwrite, plots=not no_plots, as_json=as_json)
         return
     if override:
         raise typer.BadParameter("sets keys of the budget: give --budget, too", param_hint="--set")
@@ -99,10 +104,8 @@ def sensors(
 
 
 def _budget(
-    name: str | None,
+    settings: dict[str, str | float | None],
     override: list[str],
-    mode: str | None,
-    noise_scale: float,
     out: Path | None,
     *,
     overwrite: bool,
@@ -115,15 +118,11 @@ def _budget(
     from uavsim.studies.error_budget import of_scenario
     from uavsim.views import documents, error_budget, terminal
 
-    keys = []
-    if name is not None:
+    if settings["preset"] is not None:
         with user_input():
-            pressure_sensor(name)
-        keys += [f"air_data.{port}.preset={name}" for port in ("total", "static")]
-    if mode is not None:
-        keys += [f"air_data.{port}.mode={mode}" for port in ("total", "static")]
-    if noise_scale != 1.0:
-        keys += [f"air_data.{port}.noise_scale={noise_scale:g}" for port in ("total", "static")]
+            pressure_sensor(str(settings["preset"]))
+    given = {key: value for key, value in settings.items() if value is not None}
+    keys = [f"air_data.{port}.{key}={value}" for port in ("total", "static") for key, value in given.items()]
     with user_input():
         found = of_scenario(load_scenario("catapult", overrides=[*keys, *override]))
     if as_json:

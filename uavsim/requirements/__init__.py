@@ -40,14 +40,12 @@ Exposure = Literal["armed", "flight"]
 
 PACKAGED = Path(__file__).resolve().parent
 OUTCOME = "outcome"  # the one key of the score that is no number and may be asked for
-COUNTS: dict[str, Exposure] = {
-    "launch.false_detections": "armed",
-    "airspeed.flags": "flight",
-    "airspeed.false_flags": "flight",
-    "airspeed.losses": "flight",
-    "airspeed.hazard": "flight",
-}
-"""Numbers of events, which a rate may be of, each with the hours that it counts in."""
+COUNTS = (  # numbers of events, which a rate may be of
+    *("launch.false_detections", "airspeed.flags", "airspeed.false_flags", "airspeed.losses", "airspeed.hazard"),
+)
+FLOWN = ("armed", "flight")  # exposures of a flight itself
+ALLOWED = {OUTCOME: FLOWN, "launch.false_detections": ("armed",), **dict.fromkeys(COUNTS[1:], ("flight",))}
+"""Exposures in which something can happen."""
 STATISTICS = ("every", "probability", "p50", "p95", "p99", "mean", "rate_per_hour")
 QUANTILE = re.compile(r"p([0-9]{1,2}(?:\.[0-9]{1,3})?)")
 BOUNDS = ("equals", "minimum", "maximum", "at_least", "at_most", "exposure")
@@ -263,23 +261,16 @@ def _check_event(r: Requirement) -> str:
     where, counts = f" ({r.key})", r.kind == "rate_per_hour"
     if r.kind not in ("probability", "rate_per_hour"):
         return ""
-    if counts and r.exposure is None:
-        return f"{where}: exposure is missing; it must be {' or '.join(map(repr, get_args(Exposure)))}"
+    if counts and r.exposure not in ALLOWED[r.key]:
+        said = "exposure is missing; it" if r.exposure is None else f"exposure = {r.exposure!r}:"
+        return f"{where}: {said} must be one of {', '.join(ALLOWED[r.key])}"
     if r.key == OUTCOME:
         return _check_outcome(r)
     if r.equals is not None:
         return f"{where}: equals is for outcome; a number has minimum and maximum"
     if not counts and r.minimum is None and r.maximum is None:
         return f"{where}: needs minimum or maximum, or both, to say which values are the event"
-    return f"{where}{_wrong_hours(r)}" if counts and r.exposure != COUNTS[r.key] else ""
-
-
-def _wrong_hours(r: Requirement) -> str:
-    """Say why a count is not one over the hours that are given."""
-    why = (
-        "counts nothing after the release" if COUNTS[r.key] == "armed" else "is of a flight, not of the wait before it"
-    )
-    return f": exposure must be {COUNTS[r.key]!r}: it {why}"
+    return ""
 
 
 def _check_outcome(r: Requirement) -> str:

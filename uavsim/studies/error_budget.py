@@ -9,11 +9,11 @@ share of the dynamic pressure, and the thermometer grow as V, and the lag in an 
 | cause | error of p_t − p_s |
 |---|---|
 | noise | one reading of each sensor, rounding included |
-| tare | noise of the mean under the cover; in the open, ½ρw² of the wind; none: offset and solder of two parts |
+| tare | noise of the mean under the cover; in the open, ½ρw² of the wind; none: what the pair may be apart |
 | drift | the pair's walk since the tare |
 | warming | temperature coefficient of both offsets, times what the dies change since the tare |
 | thermometer | none: it makes V·σ_T/(2·T) |
-| position | static port's c₀, c_α, c_αα, c_ββ, c_M at stated angles, times q_c |
+| position | what a calibration leaves of the static port's error at stated angles, a share of q_c |
 | lag | age of the total pressure in a stated acceleration; difference of both ages in a stated climb |
 | force | air column in the tubes and sensitivity of the membranes, times the same acceleration |
 
@@ -27,7 +27,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sensors import AirDataSettings, known_of_head
+from sensors import AirDataSettings, HeadKnowledge, known_of_head
+from sensors.knowledge import PortKnowledge
 from uavsim import airdata
 from uavsim.plants.air.weather import at_ground
 from uavsim.scenario import Scenario
@@ -127,16 +128,16 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
     speed = np.asarray(speeds, dtype=float)
     total = airdata.total_at_airspeed(airspeed=speed, static=c.static, temperature=c.temperature)
     by_total, by_static, by_warmth = airdata.airspeed_gradient(total=total, static=c.static, temperature=c.temperature)
-    impact, mach = total - c.static, airdata.mach(total=total, static=np.full(speed.shape, c.static))
+    impact = total - c.static
     density = c.static / (airdata.GAS_CONSTANT_DRY_AIR * c.temperature)
-    head = known_of_head(air)
+    head, parts = known_of_head(air), (air.total.description(), air.static.description())
     one, other = head.total.noise_sd, head.static.noise_sd
     pressures = {
         "noise": np.hypot(by_total * one, by_static * other),
-        "tare": by_total * _tare_sd(air, c, density),
-        "drift": by_total * head.walk * sqrt(c.since_tare),
+        "tare": by_total * _tare_sd(air, head, c, density),
+        "drift": by_total * hypot(*(part.walk for part in parts)) * sqrt(c.since_tare),
         "warming": by_total * _warming_sd(air, c),
-        "position": by_total * impact * _position(air, c, mach),
+        "position": by_total * impact * _position(head.ports, c),
         "lag": by_total * _lag(head.total, head.static, c, density, speed),
         "force": by_total * c.acceleration * hypot(head.column, head.total.membrane_sd, head.static.membrane_sd),
     }
@@ -145,24 +146,16 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
     terms = {name: stop * sd for name, sd in pressures.items()}
     terms["thermometer"] = by_warmth * head.temperature_sd
     terms = {name: terms[name] for name in TERMS}
-    parts = [f"{part.name} {part.mode.name}" for part in (air.total.description(), air.static.description())]
+    names = [f"{part.name} {part.mode.name}" for part in parts]
     all_of_them = np.sqrt(sum(np.square(sd) for sd in terms.values()))
-    return Budget((parts[0], parts[1]), c, speed, terms, np.asarray(all_of_them))
+    return Budget((names[0], names[1]), c, speed, terms, np.asarray(all_of_them))
 
 
-def _tare_sd(air: AirDataSettings, c: Conditions, density: float) -> float:
+def _tare_sd(air: AirDataSettings, head: HeadKnowledge, c: Conditions, density: float) -> float:
     """Error that the tare leaves in the pair's difference, Pa."""
     parts = air.total.description(), air.static.description()
     if air.tare == "none":
-        spread = [
-            hypot(
-                part.offset_sd,
-                (part.solder[1] - part.solder[0]) / 6.0,
-                part.scale_sd * (c.static - part.reference_pressure),
-            )
-            for part in parts
-        ]
-        return hypot(*spread)
+        return head.difference_sd
     readings = [max(1.0, air.tare_duration * min(air.rate, part.rate)) for part in parts]
     noise = hypot(*(part.noise_sd / sqrt(count) for part, count in zip(parts, readings, strict=True)))
     return hypot(noise, 0.5 * density * c.wind**2) if air.tare == "open" else noise
@@ -175,11 +168,10 @@ def _warming_sd(air: AirDataSettings, c: Conditions) -> float:
     return coefficient * hypot(left, c.warmer)
 
 
-def _position(air: AirDataSettings, c: Conditions, mach: Array) -> Array:
-    """Position error of the static port as a share of q_c; angles are standard deviations."""
-    port = air.static_port
-    even = port.error + port.error_alpha2 * c.alpha**2 + port.error_beta2 * c.beta**2 + port.error_mach2 * mach**2
-    return np.asarray(np.hypot(even, port.error_alpha * c.alpha))
+def _position(ports: PortKnowledge, c: Conditions) -> float:
+    """What is not known of the static port's position error, as a share of q_c; angles are standard deviations."""
+    angles = ports.alpha_sd * c.alpha, ports.alpha2_sd * c.alpha**2, ports.beta2_sd * c.beta**2
+    return hypot(ports.position_sd, *angles)
 
 
 def _lag(total: Any, static: Any, c: Conditions, density: float, speed: Array) -> Array:

@@ -187,9 +187,12 @@ def _loaded(
         more = (load * cos(banked) - cos(climb)) * 0.5 * (1.0 - cos(2.0 * pi * share))
         return STANDARD_GRAVITY * more / v
 
+    reached = float(since[-1])  # where the record ends within the leg, there is no more of it
+    end = leg.duration if since.size < 2 or leg.duration - reached < 2.0 * (since[-1] - since[-2]) else reached
+
     def solved() -> Iterator[tuple[float, float]]:
         time, climb = 0.0, now.climb
-        for following in [*since.tolist(), leg.duration]:
+        for following in [*since.tolist(), end]:
             step = following - time
             k1 = turning(time, climb)
             k2 = turning(time + 0.5 * step, climb + 0.5 * step * k1)
