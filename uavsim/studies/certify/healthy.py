@@ -386,7 +386,7 @@ def worst(rows: Sequence[Row], seed: int) -> list[dict[str, Any]]:
             rank = (bool(row.get("flags")), row["outcome"] != "cruise", row.get("worst_ratio") or 0.0)
             found.append((rank, {"number": row["number"], "wrong": "; ".join(wrong), **_named(row, seed)}))
     found.sort(key=lambda one: one[0], reverse=True)
-    return [one for _, one in found[: 4 * WORST]]
+    return [one for _, one in found[: 2 * WORST]]
 
 
 def _named(row: Row, seed: int) -> dict[str, Any]:
