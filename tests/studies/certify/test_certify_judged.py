@@ -78,7 +78,7 @@ def test_levels_are_drawn(tmp_path: Path) -> None:
     levels = healthy.judge(all_well(), 1).to_dict()["tables"]["levels"]
     panels = coverage(levels).axes
     assert [panel.get_xlabel() for panel in panels] == list(PHASES)
-    assert [one.get_text() for one in panels[-1].get_yticklabels()][0].startswith("accelerometer adxl345 (")
+    assert panels[-1].get_yticklabels()[0].get_text().startswith("accelerometer adxl345 (")
     save_coverage(levels, tmp_path / "coverage.png")
     assert (tmp_path / "coverage.png").read_bytes().startswith(b"\x89PNG")
 
