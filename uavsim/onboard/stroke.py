@@ -162,7 +162,7 @@ def follow(
     level, hold : float
         Of `Stroke`, m/s² and s.
     recent : ndarray
-        Room for the short mean, as many numbers as it holds (`samples_of`).
+        Room for the short mean, twice as many numbers as it holds (`samples_of`).
     state : ndarray
         Shape (3,): rail mean, and mean of the last whole block (NaN before there is one), m/s², as `Stroke` has them at
         `rest`, which are kept up; and the speed gained, m/s, which is returned in it.
@@ -190,7 +190,7 @@ def follow(
         count += 1
     state[0], state[1] = rail, last_block
 
-    samples, held, gain = len(recent), 0, 0.0
+    samples, held, at, gain = len(recent) // 2, 0, 0, 0.0
     last, quiet = recognised / rate, -1.0
     for k in range(recognised + 1, len(f)):
         v = wide(f[k])
@@ -201,12 +201,13 @@ def follow(
         step = t - last
         gain += above * (step if step < LONGEST_STEP else LONGEST_STEP)
         last = t
-        recent[held % samples] = above
+        recent[at] = recent[at + samples] = above  # twice, so that the last ones stand in a row, oldest first
+        at = at + 1 if at + 1 < samples else 0
         held += 1
         short = 0.0
         if held >= samples:
-            for i in range(held - samples, held):
-                short += recent[i % samples]
+            for i in range(at, at + samples):
+                short += recent[i]
         if held < samples or short >= level * samples:
             quiet = -1.0
         elif quiet < 0.0:

@@ -19,6 +19,8 @@ from uavsim.onboard.plausible import MOST_FORCE
 
 Indices = NDArray[np.int64]
 
+FIRST_BLOCK = 4096  # samples that are looked at before more are
+
 
 class BatchDetector:
     """A detector over arrays; decisions are those of `step` at the times k / rate, each alarm followed by `reset`.
@@ -112,11 +114,13 @@ class BatchDetector:
         """
         x, y = np.array(self._loop.x, np.float64), np.array(self._loop.y, np.int64)
         y[0] = start
-        out = np.empty(1, np.int64)
-        rest = read[..., start:]
-        whole = np.ascontiguousarray(rest)
-        found = self._run(whole, start, rate, self._loop.p, self._loop.q, x, y, out)
-        return int(out[0]) if found else -1
+        out, size, end = np.empty(1, np.int64), FIRST_BLOCK, read.shape[-1]
+        while start < end:  # in blocks that grow: rows are copied, and an alarm is often near
+            block = np.ascontiguousarray(read[..., start : start + size])
+            if self._run(block, start, rate, self._loop.p, self._loop.q, x, y, out):
+                return int(out[0])
+            start, size = start + size, 2 * size
+        return -1
 
     def _take(self, force: Forces, most: int, rate: float) -> Indices:
         out = np.empty(max(1, most), np.int64)

@@ -77,9 +77,10 @@ def decide(
         return
     rate = detector.rate if rate is None else rate
     level, mean, hold = stroke_settings(computer)
-    axial, read = along(force, launch_axis(detector.settings)), detector.read(force)
-    state, recent = np.array([0.0, np.nan, 0.0]), np.zeros(samples_of(mean, detector.rate))
+    axial = along(force, launch_axis(detector.settings))
+    state, recent = np.array([0.0, np.nan, 0.0]), np.zeros(2 * samples_of(mean, detector.rate))
     record = axial if jit() else axial.tolist()
+    read = None
     alarm, rest = first, 0
     while alarm >= 0:
         over = int(follow(record, rest, alarm, rate, level, hold, recent, state))
@@ -89,6 +90,7 @@ def decide(
         rest = _first_at(over, computer.rearm_delay, rate) + 1
         if rest >= len(axial):
             return
+        read = detector.read(force) if read is None else read
         alarm = detector.next_alarm(read, rest, rate)
 
 

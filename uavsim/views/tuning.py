@@ -10,15 +10,16 @@ from uavsim.studies.operating import level_of
 from uavsim.studies.tuning import ALONE, CLASSES, SAID, Score, Tuned, plain
 from uavsim.views.terminal import _console, _print, _table
 
+SMALL_RATE = 10.0  # 1/h, below which a bound is printed beside a rate
 TABLE = {
     "launches detected": ("pd", 1.0, 4),
     "  at least (95 %)": ("pd_low", 1.0, 4),
     "too early": ("early", 1.0, 0),
     "wings open after the launch": ("pc", 1.0, 4),
     "  on the rail": ("on_rail", 1.0, 0),
-    "latency from onset, median, ms": ("onset_median", 1e3, 1),
-    "  95 % quantile, ms": ("onset_p95", 1e3, 1),
-    "  from 4.5 g on, median, ms": ("crossing_median", 1e3, 1),
+    "ms from onset on, median": ("onset_median", 1e3, 1),
+    "  95 % quantile": ("onset_p95", 1e3, 1),
+    "ms from 4.5 g on, median": ("crossing_median", 1e3, 1),
 }
 
 
@@ -69,7 +70,7 @@ def print_tuned(found: Tuned) -> None:
     console, name = _console(), found.scenario.name
     head = f"{found.before.kind} for {name}: {found.tried} settings tried on seed {found.seed}, scored on {found.fresh}"
     _print(console, f"\n{head}\n")
-    table = _table(("", "tuned", "as it was", f"tuned, on seed {found.seed}"))
+    table = _table(("", "tuned", "as it was", f"on seed {found.seed}"))
     scores = (found.tuned, found.was, found.own)
     for label, (key, factor, digits) in TABLE.items():
         table.add_row(label, *(_number(score.launches[key], factor, digits) for score in scores))
@@ -96,7 +97,7 @@ def _number(value: float, factor: float, digits: int) -> str:
 
 
 def _rate(score: Score, kind: str, *, wings: bool) -> str:
-    """Rate in a class, 1/h, and in brackets its upper 95 % bound."""
+    """Rate in a class, 1/h, and where it is small its upper 95 % bound."""
     one = score.alarms[kind]
     rate, high = (one.commands_per_hour, one.commands_interval()[1]) if wings else (one.per_hour, one.interval()[1])
-    return f"{rate:.3g} (≤ {high:.3g})"
+    return f"{rate:.3g}" if rate >= SMALL_RATE else f"{rate:.2g} (≤ {high:.2g})"
