@@ -153,7 +153,7 @@ def count(
     axes = (0, 1, 2) if len(used) > 1 else tuple(used)
     pieces = {name: ceil(time * PIECES_AN_HOUR - 1e-9) for name, time in hours.items()}
     parts: list[Callable[[], NDArray[np.int64]]] = [
-        partial(_count_piece, detectors, computer, DISTURBANCES[name], seed, k, rate, axes)
+        partial(count_piece, detectors, computer, DISTURBANCES[name], seed, k, rate, axes)
         for name, n in pieces.items()
         for k in range(n)
     ]
@@ -167,7 +167,7 @@ def count(
     }
 
 
-def _count_piece(
+def count_piece(
     detectors: Sequence[DetectorSettings],
     computer: FlightComputerSettings,
     what: Disturbance,
