@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from uavsim.consistency import LAGS, LEAST, ljung_box
 from uavsim.failure import FAILED
 from uavsim.files import without_none
+from uavsim.installation import installation
 from uavsim.score_keys import PHASES, PRESSURE, PRESSURES
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -208,6 +209,7 @@ def _score(flight: Judged) -> dict[str, Any]:
         "airspeed": airspeed,
         "pressure": {name: _pressure(flight, name) for name in PRESSURES},
         "flight": _flight(flight),
+        "installation": installation(flight.tables["truth"], flight.scenario.air_data, flies=not flight.is_rig),
         "requirements": [],
         "remarks": [],
     }

@@ -12,6 +12,7 @@ is put back.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,8 +42,7 @@ def launch_axis(settings: DetectorSettings) -> str:
 def along(force: Forces, axis: str) -> Forces:
     """Specific force along a signed body axis, m/s²; of a record of one axis that is the one."""
     column = force if force.ndim == 1 else force[:, "xyz".index(axis[1])]
-    signed: Forces = np.ascontiguousarray(column if axis[0] == "+" else -column)
-    return signed
+    return cast(Forces, np.ascontiguousarray(column if axis[0] == "+" else -column))
 
 
 def decide(
@@ -79,7 +79,7 @@ def decide(
     level, mean, hold = stroke_settings(computer)
     axial = along(force, launch_axis(detector.settings))
     state, recent = np.array([0.0, np.nan, 0.0]), np.zeros(2 * samples_of(mean, detector.rate))
-    record = axial if jit() else axial.tolist()
+    record: Any = axial if jit() else axial.tolist()
     read = None
     alarm, rest = first, 0
     while alarm >= 0:
