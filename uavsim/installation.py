@@ -32,6 +32,8 @@ LAST = 5.0  # s at the end that are the segment, those over which cruise is judg
 STEADY = 1.0  # m/s, most that a trimmed airspeed is from its mean
 BANK = np.pi / 6.0  # rad
 WING_OUT = 0.99
+FLOW = ("p_total", "p_static", "mach", "alpha", "beta", "throttle")
+COLUMNS = ("t", "airspeed", "wing", "roll", *FLOW)
 SHARE, KNOTS = 0.03, 5.0 * 1852.0 / 3600.0  # of calibrated airspeed; m/s. 14 CFR 25.1323(c)
 
 
@@ -51,9 +53,11 @@ def installation(truth: Mapping[str, Any], settings: AirDataSettings, *, flies: 
     -------
     dict
         `calibrated_airspeed` and `error`, m/s, and `over_limit`, the error's size over the limit; None where the
-        segment is not trimmed.
+        segment is not trimmed or the truth does not have what it takes.
     """
     nothing: dict[str, float | None] = dict.fromkeys(INSTALLATION)
+    if any(name not in truth for name in COLUMNS):  # of a plant, or a record, that does not tell them
+        return nothing
     time = np.asarray(truth["t"], float)
     if not time.size or time[-1] - time[0] < LAST:
         return nothing
@@ -68,9 +72,7 @@ def installation(truth: Mapping[str, Any], settings: AirDataSettings, *, flies: 
         return nothing
     if flies and not (column("wing").min() >= WING_OUT and np.abs(column("roll")).max() < BANK):
         return nothing
-    total, static, mach, alpha, beta, throttle = (
-        float(column(name).mean()) for name in ("p_total", "p_static", "mach", "alpha", "beta", "throttle")
-    )
+    total, static, mach, alpha, beta, throttle = (float(column(name).mean()) for name in FLOW)
     if not (total > static > 0.0):
         return nothing
 

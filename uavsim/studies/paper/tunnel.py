@@ -4,11 +4,11 @@ The packaged scenario `wind-tunnel` flies: 0 to 40 m/s in steps of 5 m/s, 10 s e
 16.54 and 2.40 Pa at 100 Hz. How fast, how long and at what rate the published run was is not said.
 
 Table 7 tells the gains of the paper's filter: a random walk's filter leaves √(K/(2 - K)) of white noise on a constant,
-so 13.52/16.54 is K = 0.801 and 1.87/2.40 is K = 0.756. Table 8 fits no unit of speed: 16.7 Pa on p_t - p_s are
-0.0159 m/s at σ/(ρ 0.0159) = 860 m/s. As a share of the airspeed, σ_V/V = σ/(ρV²), they are 0.0159 at 29.3 m/s. Of white
-noise the airspeed's error falls by as much as that of p_t - p_s, 18.4 %, where the root is linear, and by less near
-rest. So 26.42 % take more than white noise: slow turbulence that grows with V² weighs on the pressures of the fast plateaus
-and hardly on the airspeed of the slow ones, so that the airspeed gains more than the total pressure.
+so 13.52/16.54 is K = 0.801 and 1.87/2.40 is K = 0.756. Table 8 fits no unit of speed: 16.7 Pa on p_t - p_s are 0.0159
+m/s at σ/(ρ 0.0159) = 860 m/s. As a share of the airspeed, σ_V/V = σ/(ρV²), they are 0.0159 at 29.3 m/s. Of white noise
+the airspeed's error falls by as much as that of p_t - p_s, 18.4 %, where the root is linear, and by less near rest. So
+26.42 % take more than white noise: slow turbulence that grows with V² weighs on the pressures of the fast plateaus and
+hardly on the airspeed of the slow ones, so that the airspeed gains more than the total pressure.
 
 What the noise allows: someone who knows when the speed steps and with which lag it settles has only each level to
 find. With g = 1 - e^{-s/τ}, the share of a step that has come after s, and V(s) the speed,
