@@ -55,29 +55,14 @@ def installation(truth: Mapping[str, Any], settings: AirDataSettings, *, flies: 
         `calibrated_airspeed` and `error`, m/s, and `over_limit`, the error's size over the limit; None where the
         segment is not trimmed or the truth does not have what it takes.
     """
+    flow = _segment(truth, flies=flies)
     nothing: dict[str, float | None] = dict.fromkeys(INSTALLATION)
-    if any(name not in truth for name in COLUMNS):  # of a plant, or a record, that does not tell them
+    if flow is None:
         return nothing
-    time = np.asarray(truth["t"], float)
-    if not time.size or time[-1] - time[0] < LAST:
-        return nothing
-    last = time >= time[-1] - LAST
-
-    def column(name: str) -> Array:
-        values: Array = np.asarray(truth[name], float)[last]
-        return values
-
-    speed = column("airspeed")
-    if not np.isfinite(speed).all() or np.abs(speed - speed.mean()).max() > STEADY:
-        return nothing
-    if flies and not (column("wing").min() >= WING_OUT and np.abs(column("roll")).max() < BANK):
-        return nothing
-    total, static, mach, alpha, beta, throttle = (float(column(name).mean()) for name in FLOW)
-    if not (total > static > 0.0):
-        return nothing
+    total, static, *_ = flow
 
     def felt(port: Port | None, true: float) -> float:
-        return true if port is None else port(total, static, mach, alpha, beta, throttle)
+        return true if port is None else port(*flow)
 
     ports = felt(total_port(settings.total_port), total), felt(static_port(settings.static_port), static)
     try:
@@ -87,3 +72,16 @@ def installation(truth: Mapping[str, Any], settings: AirDataSettings, *, flies: 
         return nothing
     error = shown - true
     return {"calibrated_airspeed": true, "error": error, "over_limit": abs(error) / max(SHARE * true, KNOTS)}
+
+
+def _segment(truth: Mapping[str, Any], *, flies: bool) -> tuple[float, float, float, float, float, float] | None:
+    """Means of the flow over the last seconds, as `FLOW` names them; None if they are not trimmed, or not told."""
+    time = np.asarray(truth["t"], float)
+    if any(name not in truth for name in COLUMNS) or not time.size or time[-1] - time[0] < LAST:
+        return None
+    last = {name: np.asarray(truth[name], float)[time >= time[-1] - LAST] for name in COLUMNS}
+    speed = last["airspeed"]
+    steady = np.isfinite(speed).all() and np.abs(speed - speed.mean()).max() <= STEADY
+    level = not flies or (last["wing"].min() >= WING_OUT and np.abs(last["roll"]).max() < BANK)
+    total, static, mach, alpha, beta, throttle = (float(last[name].mean()) for name in FLOW)
+    return (total, static, mach, alpha, beta, throttle) if steady and level and total > static > 0.0 else None
