@@ -114,7 +114,7 @@ class Block:
     def commands(self) -> dict[str, str]:
         """What is run, by the row's label."""
         if self.figures:
-            return {"": f"pytest -m slow {self.figures}"}
+            return {"": f"pytest -m slow --whole {self.figures}"}
         if not self.rows:
             return {"": self.command}
         return {label: self.command.replace("{}", own) if self.command else own for label, own in self.rows.items()}

@@ -7,10 +7,12 @@
 
 The sensors run freely, so the two values of a row are of different instants and as old as their clocks make them:
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
-cover both ports feel the static pressure, wind or not.
+cover both ports feel the static pressure, wind or not, for the whole flight if it is left on. Swapped tubes bring each
+port's pressure to the other's sensor.
 
-With nothing between the air and two sensors that do not feel acceleration, a conversion takes the truth at the middle
-of its window, and only conversions that are polled ask for it (`full` is false). Otherwise the head must feel each
+With no tube between the air and two sensors that do not feel acceleration, a conversion takes the truth, and what the
+ports make of it, at the middle of its window, and only conversions that are polled ask for it (`full` is false; of a
+plant that tells no `flow_at` any time, with ports that tell the truth alone). Otherwise the head must feel each
 plant step (`feel`): ports, tubes and membranes are followed, and a conversion is the mean over its window of what is
 felt, linear between plant steps and integrated exactly,
 
@@ -23,13 +25,14 @@ part, and a pressure that is no number spoils the windows it is in and no others
 from math import inf, nan
 
 from sensors.clock import Clock
+from sensors.faults import value_faults
 from sensors.pneumatics import Line
 from sensors.pressure import PressureSensor
 from sensors.probe import static_port, total_port
 from sensors.settings import AirDataSettings, PortFault, PressureSettings, ThermalSettings, TubeSettings
 from sensors.streams import Streams
 from sensors.surroundings import Air, Flow, Surroundings
-from sensors.unit import Triple, Unit
+from sensors.unit import Batch, Triple, Unit
 
 Row = tuple[float, float, float, float, float, float]
 
@@ -76,8 +79,8 @@ class AirDataHead:
 
     __slots__ = (
         "_dt", "_lines", "_membranes", "_next_poll", "_open", "_settings", "_static_error", "_static_felt",
-        "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt", "_total_truth",
-        "covered_until", "due", "full", "static", "surroundings", "total",
+        "_static_truth", "_steps_per_second", "_t", "_temperature", "_thermometer", "_told_temperature", "_total_error",
+        "_total_felt", "_total_truth", "covered_until", "due", "full", "static", "surroundings", "total",
     )  # fmt: skip
 
     def __init__(
@@ -93,9 +96,12 @@ class AirDataHead:
     ) -> None:
         self._settings = settings
         forward, down = settings.normals()
-        self.total = _sensor(settings.total, forward, settings.thermal, streams, unit, f"{name}.total")
-        self.static = _sensor(settings.static, down, settings.thermal, streams, unit, f"{name}.static")
-        self.covered_until = covered_until
+        alike = Batch.drawn(settings.batch, streams, f"{name}.batch")
+        self.total = _sensor(settings.total, forward, settings.thermal, streams, unit, f"{name}.total", alike)
+        self.static = _sensor(settings.static, down, settings.thermal, streams, unit, f"{name}.static", alike)
+        self._thermometer = value_faults(settings.thermometer_faults, streams, f"{name}.thermometer")
+        self._told_temperature = nan
+        self.covered_until = inf if settings.cover_left_on else covered_until
         poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
         self.due, self._next_poll = poll.due, poll.later
 
@@ -106,12 +112,15 @@ class AirDataHead:
         self._static_felt: list[float] = []
         self._t = self._temperature = nan
         self._lines: tuple[Line | None, Line | None] | None = self._connect(nan, nan)  # checks the directions, too
-        self._open = (self._total_error, self._static_error, *self._lines) == (None,) * 4
+        self._open = (self._total_error, self._static_error, *self._lines) == (None,) * 4 and not settings.swapped_tubes
         felt = settings.acceleration_sensitivity
         self._membranes = (*self.total.acceleration, *self.static.acceleration) if felt else (0.0,) * 6
-        self.full = not self._open or any(self._membranes)
-        self._total_truth = self._mean_of_total if self.full else self._total_port
-        self._static_truth = self._mean_of_static if self.full else self._static_port
+        ports = not (self._total_error is None and self._static_error is None)
+        behind = self._lines != (None, None) or any(self._membranes)
+        self.full = behind or (ports and not hasattr(surroundings, "flow_at"))
+        of_total, of_static = (self._total_read, self._static_read) if ports else (self._total_port, self._static_port)
+        self._total_truth = self._mean_of_total if self.full else of_total
+        self._static_truth = self._mean_of_static if self.full else of_static
         self._lines = None
 
     def feel(self, t: float, force: Triple) -> None:
@@ -159,9 +168,18 @@ class AirDataHead:
         while t <= until:
             p_total, _, t_total = self.total.read(t, self._total_truth)
             p_static, temperature, t_static = self.static.read(t, self._static_truth)
+            if self._thermometer is not None:
+                temperature = self._told(t, temperature)
             rows.append((t, p_total, p_static, temperature, t_total, t_static))
             t = self.due = self._next_poll()
         return rows
+
+    def _told(self, t: float, temperature: float) -> float:
+        """Return what a thermometer that breaks makes of a temperature, K; where nothing comes the last one stands."""
+        arrived = None if self._thermometer is None else self._thermometer(t, temperature)
+        if arrived is not None:
+            self._told_temperature = arrived
+        return self._told_temperature
 
     # -- the truth of a conversion -----------------------------------------------------------------------------------
 
@@ -172,6 +190,24 @@ class AirDataHead:
     def _static_port(self, t: float) -> tuple[float, float]:
         _, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
         return p_static, temperature
+
+    def _flow_at(self, t: float) -> Flow:
+        flow: Flow = getattr(self.surroundings, "flow_at", no_flow)(t)  # not kept: it would hold the plant
+        return flow
+
+    def _total_read(self, t: float) -> tuple[float, float]:
+        total, static, temperature, mach, alpha, beta, throttle = self._flow_at(t)
+        if t < self.covered_until:
+            return static, temperature
+        port = self._total_error
+        return (total if port is None else port(total, static, mach, alpha, beta, throttle)), temperature
+
+    def _static_read(self, t: float) -> tuple[float, float]:
+        total, static, temperature, mach, alpha, beta, throttle = self._flow_at(t)
+        port = self._static_error
+        if port is None or t < self.covered_until:
+            return static, temperature
+        return port(total, static, mach, alpha, beta, throttle), temperature
 
     def _mean_of_total(self, middle: float) -> tuple[float, float]:
         return self._mean(self._total_felt, middle, self.total.half_window), self._temperature
@@ -217,7 +253,7 @@ class AirDataHead:
             total = total_line.step(t, total, p_static, temperature, force)
         if static_line is not None:
             static = static_line.step(t, static, p_static, temperature, force)
-        return total, static
+        return (static, total) if self._settings.swapped_tubes else (total, static)
 
     def _connect(self, pressure: float, temperature: float) -> tuple[Line | None, Line | None]:
         s = self._settings
@@ -228,11 +264,23 @@ class AirDataHead:
             return Line(tube, direction, faults, self._dt, pressure=pressure, temperature=temperature)
 
         total, static = s.tubes()
-        return line(*total, s.total_port.faults), line(*static, s.static_port.faults)
+        both = s.port_faults
+        return line(*total, s.total_port.faults + both), line(*static, s.static_port.faults + both)
+
+
+def no_flow(_t: float) -> Flow:
+    """Return what is known of the air where nobody says anything."""
+    return NO_FLOW
 
 
 def _sensor(
-    settings: PressureSettings, normal: Triple, thermal: ThermalSettings, streams: Streams, unit: Unit | None, name: str
+    settings: PressureSettings,
+    normal: Triple,
+    thermal: ThermalSettings,
+    streams: Streams,
+    unit: Unit | None,
+    name: str,
+    batch: Batch,
 ) -> PressureSensor:
     return PressureSensor(
         settings.description(),
@@ -244,6 +292,7 @@ def _sensor(
         rate_error_percent=settings.rate_error_percent,
         thermal=thermal,
         faults=settings.faults,
+        batch=batch,
     )
 
 

@@ -75,12 +75,15 @@ HELD = (
     "flight_computer.motor_delay=0.2", "flight_computer.stroke_end_level_g=1.3",
     "flight_computer.stroke_end_mean=0.014",
     "flight_computer.stroke_end_hold=0.026", "flight_computer.safe_throttle=0.62", "flight_computer.loss_time=0.16",
+    "flight_computer.rail_elevation_deg=16.6", "flight_computer.rail_elevation_sd_deg=0.8",
+    "flight_computer.rail_roll_deg=0.4",
 )  # fmt: skip
 BELIEVED = (
     "mismatch.total_noise=1.2", "mismatch.static_noise=0.9", "mismatch.drift=1.5", "mismatch.lag=0.8",
     "mismatch.acceleration=0.9", "mismatch.acceleration_sd=1.3", "mismatch.accelerometer_noise=1.1",
     "mismatch.accelerometer_scale=1.2", "mismatch.accelerometer_lag=1.1", "mismatch.temperature=1.4",
-    "mismatch.gust=1.3", "mismatch.accelerometer_offset=1.2",
+    "mismatch.gust=1.3", "mismatch.accelerometer_offset=1.2", "mismatch.wind=0.9", "mismatch.position=0.95",
+    "mismatch.position_sd=1.5",
     "estimator.wind_sd=4", "estimator.aided.bias_time=4", "estimator.aided.gust_length=170",
     "estimator.aided.slope_time=4", "estimator.aided.replay=0.25", "estimator.vapour_fraction=0.01",
 )  # fmt: skip
@@ -106,6 +109,9 @@ AIDED = (
     "estimator.aided.gust_floor=0.3",
     "estimator.aided.gust_height=25", "estimator.aided.slope_rate=0.9", "estimator.aided.bias_sd=0.45",
     "estimator.aided.bias_rate=0.003", "estimator.aided.static_walk=0.4", "estimator.aided.on_rail=25",
+    "estimator.aided.shear_along=0.4", "estimator.aided.launch_height=1.7", "estimator.aided.rail_wind_along=0.5",
+    "estimator.aided.rail_wind_side=-0.4", "estimator.aided.rail_wind_down=0.1", "estimator.aided.rail_wind_sd=0.6",
+    "estimator.aided.lift_slope=9.1", "estimator.aided.lift_zero=-0.06", 'air_data.calibration="none"',
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
     "mismatch.acceleration_calibration=0.5", "flight_computer.speed_gain_min=12",
     "aircraft.properties.ap/gain/pitch=0.3", "aircraft.mass_factor=1.06", "aircraft.cg_shift=-0.008",
@@ -222,6 +228,33 @@ FLIGHTS: dict[str, Wanted] = {
     "launch-curve-that-rings": ("launch-curve", 30, (
         "duration=4", *NOT_TWICE, "plant.launch_curve.ring_fraction=0.4", "plant.launch_curve.ring_hz=90",
         "plant.launch_curve.ring_phase_deg=200", "plant.launch_curve.ring_decay=0.08",
+    )),
+    "torn-and-wet": ("catapult", 36, (
+        *NOT_TWICE, "duration=9", "air_data.static_port.tube.length=0.25", "air_data.batch=0.6",
+        port("total", 'kind="leak",start=6,stop=7.5,area=0.6'), port("static", 'kind="leak",start=7,area=2'),
+        'air_data.thermometer_faults=[{kind="invalid",start=5,stop=5.4},{kind="dead",start=8,size=400}]',
+    )),
+    "cover-left-on": ("catapult", 37, (*NOT_TWICE, "duration=6", "air_data.cover_left_on=true")),
+    "tubes-swapped": ("catapult", 38, (
+        *NOT_TWICE, "duration=6", "air_data.swapped_tubes=true", 'accelerometer.faults=[{kind="dead",start=5,size=2}]',
+    )),
+    "both-iced": ("catapult", 39, (
+        *NOT_TWICE, *CLIMB, "duration=12",
+        'air_data.port_faults=[{kind="ice",start=5,duration=1.5,between_heights=[12,200]}]',
+        'air_data.total.faults=[{kind="dead",start=10,size=90000}]',
+    )),
+    "course": ("manoeuvres", 34, (
+        *NOT_TWICE, "duration=15", "plant.flight_path.push=motor", "plant.flight_path.burn=2.5",
+        "launcher.peak_specific_force_g=5.5", "environment.wind_speed=5", "environment.wind_from_deg=80",
+        "environment.turbulence_wind_20ft=4", "plant.flight_path.wing_loading=20", "plant.flight_path.lift_slope=5.2",
+        "plant.flight_path.zero_lift_deg=-3", "plant.flight_path.span=2.4", "air_data.total_port.slipstream=0.03",
+        "plant.flight_path.legs=[{duration=2,airspeed=70,climb_deg=3,throttle=1},{duration=2,load_g=3,bank_deg=30},"
+        "{duration=2,load_g=0},{duration=3,bank_deg=-50,climb_deg=2}]",
+    )),
+    "thrown": ("manoeuvres", 35, (
+        *NOT_TWICE, "duration=6", "plant.flight_path.push=throw", "plant.flight_path.swing=0.25",
+        "launcher.peak_specific_force_g=9", "plant.flight_path.wing_loading=6",
+        "plant.flight_path.legs=[{duration=2,airspeed=17,climb_deg=8}]",
     )),
     "tunnel-by-mach": ("mach06", 31, (
         "plant.wind_tunnel.machs=[0.2,0.45]", "plant.wind_tunnel.hold=1.5", "plant.wind_tunnel.ramp=0.3",

@@ -49,6 +49,7 @@ Q = 'key="launch.latency",statistic="p95"'
             "exposure = 'handling': must be one of armed, flight",
         ),
         ('key="launch.false_wing_commands",statistic="p95",maximum=1', "is no number of the score"),
+        ('key="airspeed.hazard",statistic="rate_per_hour",maximum=1,exposure="armed"', "must be one of flight"),
         (
             'key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="x"',
             "must be 'armed', 'flight', 'handling'",

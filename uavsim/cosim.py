@@ -23,23 +23,28 @@ from weakref import proxy
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
-from uavsim.beliefs import believed_air, believed_noise, calibrated
+from uavsim.beliefs import NO_CALIBRATION, Calibration, believed_air, believed_noise, calibrated
+from uavsim.criteria import TOUCHED
 from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
+from uavsim.judged import Judged
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
+from uavsim.onboard.rail_offset import RailOffset
+from uavsim.onboard.readiness import Readiness
 from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import STEP_RATES, Plant, Run
 from uavsim.scenario import Scenario, load_scenario, with_kinds
-from uavsim.score import TOUCHED, Judged, score, touchdown
+from uavsim.score import score
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import numpy as np
+    import pandas as pd
     from numpy.typing import NDArray
 
 CHUNK = 500  # steps between two looks at the progress
@@ -58,8 +63,8 @@ class Draws:
     release_time: float  # s
     force_factor: float
     plant_seed: int
-    calibration: tuple[float, float] = (0.0, 0.0)
-    """What a calibration of both membranes along body x found of their sensitivity to acceleration, Pa/(m/s²)."""
+    calibration: Calibration = NO_CALIBRATION
+    """What a calibration of the units that fly found."""
 
 
 def draw(scenario: Scenario, index: int | None = None) -> Draws:
@@ -121,18 +126,19 @@ class Onboard:
     which of the two it came from.
     """
 
-    def __init__(self, scenario: Scenario, release_time: float, calibration: tuple[float, float]) -> None:
+    def __init__(self, scenario: Scenario, release_time: float, calibration: Calibration) -> None:
         rate = scenario.accelerometer.description().rate
         self._release_time = release_time
         self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
+        noise = believed_noise(scenario, calibration)
         self.computer = FlightComputer(
             scenario.flight_computer,
             self._detector,
-            airspeed.build(
-                believed_air(scenario), believed_noise(scenario, calibration), tare_window(scenario, release_time)
-            ),
+            airspeed.build(believed_air(scenario), noise, tare_window(scenario, release_time)),
             rate,
             scenario.launch_axis,
+            rail := RailOffset(noise),
+            Readiness(noise, rail),
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
         self.estimates: list[Estimate] = []
@@ -299,7 +305,8 @@ class Cosimulation:
     def remarks(self) -> list[str]:
         """What of plant and air deserves a word, a line each; at the end there may be more of it."""
         said = list(getattr(self.plant, "remarks", ()))
-        if not self.scenario.plant.chosen.flies and moves(self.scenario.environment):
+        kind = self.scenario.plant.chosen
+        if not (kind.flies or kind.air) and moves(self.scenario.environment):
             said.append(
                 f"plant.kind = {self.scenario.plant.kind!r} is a rig: wind, turbulence and gusts do not reach it"
             )
@@ -415,9 +422,10 @@ def replay(flight: Flight) -> Flight:
     tables["detector"] = frame_of_rows("detector", onboard.detections(flight.accelerometer["t"].to_numpy()))
     tables = {name: tables[name] for name in flight.tables}
     ended = flight.score.get("outcome", "")
-    judged = Judged(scenario, tables, onboard.computer.events, draws.release_time, ended, _versions())
-    kept = {name: flight.score[name] for name in ("reason", "remarks") if name in flight.score}
-    return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged) | kept)
+    said = flight.score.get("reason") or ""
+    judged = Judged(scenario, tables, onboard.computer.events, draws.release_time, ended, _versions(), said)
+    kept = {name: flight.score[name] for name in ("remarks",) if name in flight.score}
+    return Flight(scenario.to_dict(), _derived(judged), onboard.computer.events, score(judged) | kept)
 
 
 def _flight(simulation: Cosimulation) -> Flight:
@@ -439,11 +447,21 @@ def _flight(simulation: Cosimulation) -> Flight:
         simulation.draws.release_time,
         simulation.ended,
         _versions(),
+        simulation.reason or plant.failure,
     )
-    reason = simulation.reason or plant.failure or (touchdown(judged) if simulation.ended == TOUCHED else "")
-    result = score(judged) | ({"reason": reason} if reason else {}) | {"remarks": simulation.remarks}
-    record = frame("truth", {**truth, "phase": judged.phases()})
-    return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)
+    result = score(judged) | {"remarks": simulation.remarks}
+    return Flight(simulation.scenario.to_dict(), _derived(judged), onboard.computer.events, result)
+
+
+def _derived(judged: Judged) -> "dict[str, pd.DataFrame]":
+    """Return the tables of what was judged, with the columns that follow from others."""
+    tables = dict(judged.tables)
+    if "truth" in tables:
+        phase = {"phase": judged.phases(), **judged.true_airspeeds.columns()}
+        tables["truth"] = frame("truth", {**tables["truth"], **phase})
+    if "estimate" in tables:
+        tables["estimate"] = tables["estimate"].assign(**judged.told_airspeeds.columns())
+    return tables
 
 
 @cache

@@ -83,6 +83,10 @@ class MismatchSettings:
         Factor on the standard deviation of what is not known of it.
     acceleration_calibration : float
         Error of a calibration of the membranes' sensitivity, as a share of what is usual for the part.
+    position : float
+        Factor on what is known of the ports' errors: the probe's angle apart, position error and slipstream.
+    position_sd : float
+        Factor on the standard deviation of what is not known of them.
     accelerometer_noise : float
         Factor on the standard deviation of a reading of specific force, vibration included.
     accelerometer_scale : float
@@ -93,6 +97,8 @@ class MismatchSettings:
         Factor on the age of a reading of specific force at its time stamp.
     gust : float
         Factor on the standard deviation of the turbulence that the environment declares, and on the mean wind's growth.
+    wind : float
+        Factor on the wind on the rail that the environment declares, and on its standard deviation; 0: none is known.
     humidity : float
         Factor on the share of vapour in the air.
     """
@@ -105,11 +111,14 @@ class MismatchSettings:
     acceleration: Annotated[float, Interval(ge=-10.0, le=10.0)] = 1.0
     acceleration_sd: Belief = 1.0
     acceleration_calibration: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.3
+    position: Annotated[float, Interval(ge=-10.0, le=10.0)] = 1.0
+    position_sd: Belief = 1.0
     accelerometer_noise: Belief = 1.0
     accelerometer_scale: Belief = 1.0
     accelerometer_offset: Belief = 1.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     gust: Belief = 1.0
+    wind: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     humidity: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
 
 
@@ -704,12 +713,19 @@ def _check_faults(s: Scenario) -> None:
         _check_order(f"{key}.faults", part.faults)
     _check_order("air_data.total_port.faults", s.air_data.total_port.faults)
     _check_order("air_data.static_port.faults", s.air_data.static_port.faults)
+    _check_order("air_data.port_faults", s.air_data.port_faults)
+    _check_order("air_data.thermometer_faults", s.air_data.thermometer_faults)
 
 
 def _check_order(key: str, faults: Iterable[Fault | PortFault]) -> None:
     for i, fault in enumerate(faults):
         if fault.stop <= fault.start:
             raise SettingError(f"{key}[{i}].stop = {fault.stop:g}: must be after its start, {fault.start:g} s", key)
+        band = fault.between_heights if isinstance(fault, PortFault) else None
+        if band is not None and band[0] >= band[1]:
+            raise SettingError(
+                f"{key}[{i}].between_heights = [{band[0]:g}, {band[1]:g}]: must be a band, low first", key
+            )
 
 
 def _parts(s: Scenario) -> tuple[tuple[str, AccelerometerSettings | PressureSettings], ...]:

@@ -1,10 +1,6 @@
 """Batches of flights that the longer checks share, and the figures that they measure, printed at the end of a run."""
 
-import json
-import os
 from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +10,6 @@ from uavsim.studies.batch import Batch, fly_seeds
 
 Figure = Callable[..., None]
 WORKERS = 2
-_measured: list[str] = []
-_figures: list[dict[str, str]] = []
 
 
 @pytest.fixture
@@ -27,17 +21,16 @@ def figure(request: pytest.FixtureRequest) -> Figure:
         assert sample.size
         found = f"{sample.min():.4g} … {np.median(sample):.4g} … {sample.max():.4g} {unit}".rstrip()
         line = f"{label}: {found} ({sample.size} flights; asked {low:g} … {high:g})"
-        _measured.append(f"{request.node.name}: {line}")
+        request.node.user_properties.append(("measured", f"{request.node.name}: {line}"))
         asked = " … ".join("" if abs(bound) == np.inf else f"{bound:g}" for bound in (low, high)).strip()
-        _figures.append(
-            {
-                "check": request.node.name.removeprefix("test_").replace("_", " "),
-                "label": label,
-                "found": found,
-                "size": f"{sample.size}",
-                "asked": "–" if asked == "…" else asked,
-            }
-        )
+        kept = {
+            "check": request.node.name.removeprefix("test_").replace("_", " "),
+            "label": label,
+            "found": found,
+            "size": f"{sample.size}",
+            "asked": "–" if asked == "…" else asked,
+        }
+        request.node.user_properties.append(("figure", kept))
         assert np.isfinite(sample).all(), line
         assert np.all((sample >= low) & (sample <= high)), line
 
@@ -45,19 +38,9 @@ def figure(request: pytest.FixtureRequest) -> Figure:
 
 
 @pytest.fixture
-def table() -> Callable[[str], None]:
+def table(request: pytest.FixtureRequest) -> Callable[[str], None]:
     """Put a line of a table into the summary."""
-    return _measured.append
-
-
-def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """Print what was measured: least … median … greatest."""
-    if file := os.environ.get("UAVSIM_FIGURES"):  # for the documentation, see scripts/docs_numbers.py
-        Path(file).write_text(json.dumps(_figures, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
-    if _measured:
-        terminalreporter.section("measured: least … median … greatest")
-        for line in _measured:
-            terminalreporter.write_line(line)
+    return lambda line: request.node.user_properties.append(("measured", line))
 
 
 def flown(name: str, last: int, *overrides: str) -> Batch:

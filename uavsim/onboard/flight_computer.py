@@ -9,7 +9,9 @@ head, and turns detection into action:
 
 The end of the stroke is a short mean of f_x less its mean on the rail that stays below a level. Whether it was a launch
 tells the speed gained, the integral of the same since detection (`uavsim.onboard.stroke`): a knock must not open the
-wings. The mean on the rail holds the accelerometer's offset, so no offset keeps the wings in.
+wings. The mean on the rail holds the accelerometer's offset, so no offset keeps the wings in. As far as the offset has
+been found on the rail (`uavsim.onboard.rail_offset`), it is taken off each reading first, for detector and estimator,
+too.
 
 In flight the throttle holds the ESTIMATED airspeed and the pitch command the height by static pressure; pitch and roll
 themselves are stabilised inside the aircraft:
@@ -39,6 +41,8 @@ from annotated_types import Interval
 from uavsim import airdata
 from uavsim.onboard.interface import Commands, Detector, Estimate, Estimator, News
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.rail_offset import RailOffset
+from uavsim.onboard.readiness import Readiness
 from uavsim.onboard.stamps import Stamps, jump
 from uavsim.onboard.stroke import LONGEST_STEP, Stroke
 
@@ -92,6 +96,12 @@ class FlightComputerSettings:
         Throttle in level flight while no airspeed is known, 0 ... 1.
     loss_time
         How long an estimate must have been invalid to be given up, and valid to be flown on again, s.
+    rail_elevation_deg
+        Elevation of the rail as the crew believes it, degrees; None: that of the launcher.
+    rail_elevation_sd_deg
+        Standard deviation of that, and of the roll, degrees.
+    rail_roll_deg
+        Roll of the aircraft on the rail as the crew believes it, degrees.
     """
 
     airspeed: Annotated[float, Interval(ge=10, le=100)] = 32.0
@@ -114,6 +124,9 @@ class FlightComputerSettings:
     throttle_climb: Annotated[float, Interval(ge=0, le=10)] = 2.5
     safe_throttle: Annotated[float, Interval(ge=0, le=1)] = 0.7
     loss_time: Annotated[float, Interval(ge=0, le=10)] = 0.1
+    rail_elevation_deg: Annotated[float, Interval(ge=-90, le=90)] | None = None
+    rail_elevation_sd_deg: Annotated[float, Interval(ge=0.01, le=45)] = 0.5
+    rail_roll_deg: Annotated[float, Interval(ge=-180, le=180)] = 0.0
 
 
 def stroke_settings(settings: FlightComputerSettings) -> tuple[float, float, float]:
@@ -134,6 +147,10 @@ class FlightComputer:
         Nominal output data rate, Hz; sets how many readings the short mean of f_x holds.
     axis
         Signed body axis that points along the launch; what is said of f_x holds for it.
+    rail
+        Finds the accelerometer's offset while the aircraft waits; None: nothing is taken off the readings.
+    readiness
+        Judges on the rail whether the sensors are fit for a launch; None: nothing is said of that.
 
     Attributes
     ----------
@@ -152,6 +169,8 @@ class FlightComputer:
         estimator: Estimator,
         accelerometer_rate: float,
         axis: str = "+x",
+        rail: RailOffset | None = None,
+        readiness: Readiness | None = None,
     ) -> None:
         self.settings = settings
         self.detector = detector
@@ -161,6 +180,10 @@ class FlightComputer:
         self.events: list[dict[str, Any]] = []
         self._feel = estimator.accelerometer if estimator.aided else None
         self._news: News = estimator.news
+        self._rail, self._readiness = rail, readiness
+        self._doubts: tuple[str, ...] | None = None
+        self._begun = nan
+        self._offset = (0.0, 0.0, 0.0)
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._stroke = Stroke(*stroke_settings(settings), accelerometer_rate)
         self._level_pitch = radians(settings.level_pitch_deg)
@@ -179,9 +202,14 @@ class FlightComputer:
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force, m/s^2, body axes."""
+        state, raw = self.state, fx
+        if self._rail is not None:
+            if state == "waiting":
+                self._rest(t, fx, fy, fz)
+            x, y, z = self._offset
+            fx, fy, fz = fx - x, fy - y, fz - z
         if self._feel is not None:
             self._feel(t, fx, fy, fz)
-        state = self.state
         if state == "flying":
             return
         if not 0.0 < t - self._t <= self._longest:
@@ -189,14 +217,18 @@ class FlightComputer:
                 return
             self._step_of_the_clock(t - self._t)
         self._t = t
+        readiness = self._readiness
+        if readiness is not None and state == "waiting":
+            readiness.add(t, raw)
+            if t >= readiness.due:
+                self._look(t)
         along = fx if self._axis is None else self._axis[1] * (fx, fy, fz)[self._axis[0]]
         if state == "waiting":
             self._stroke.rest(t, along)
             if self.detector.step(t, fx, fy, fz):
                 self._detected(t)
         elif state == "stroke":
-            if self._stroke.follow(t, along):
-                self._stroke_over(t)
+            self._follow_stroke(t, along)
         elif t >= self._next_action:
             self._act(t)
 
@@ -222,7 +254,24 @@ class FlightComputer:
             self._reference_pressure = estimate[5]
         if self.state == "flying":
             self._hold(estimate, temperature)
+        elif self.state == "waiting" and self._readiness is not None and t >= self._readiness.due:
+            self._look(t)
         return estimate
+
+    def _look(self, t: float) -> None:
+        """Note whether all is ready for a launch, and why not, whenever that changes."""
+        readiness = self._readiness
+        assert readiness is not None
+        if self._begun != self._begun:
+            self._begun = t
+        reasons = readiness.look(t, self.estimator.doubts(t), self._begun)
+        if reasons is None or _alike(reasons, self._doubts):
+            return
+        self._doubts = reasons
+        if reasons:
+            self._note(t, "not_ready", reasons="; ".join(reasons))
+        else:
+            self._note(t, "ready")
 
     def _tidy(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take the reading after one of the head: there is time for what the estimator has put off."""
@@ -240,11 +289,31 @@ class FlightComputer:
 
     # -- launch ------------------------------------------------------------------------------------------------------
 
+    def _rest(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Look for the offset in a reading as it came; what has been found is taken off from here on."""
+        rail = self._rail
+        assert rail is not None
+        if not 0.0 < t - self._t <= self._longest:  # before its stamp is believed
+            return
+        rail.add(t, fx, fy, fz)
+        if rail.offset is not self._offset:
+            self._offset = rail.offset
+            if rail.odd is not None:
+                along, lift, elevation = rail.odd
+                rail.odd = None
+                self._note(t, "accelerometer_offset", offset=along, lift_offset=lift, elevation_error_deg=elevation)
+
     def _detected(self, t: float) -> None:
         self._note(t, "launch_detected")
+        if self._rail is not None and self._rail.found:
+            self.estimator.rested(self._rail.offset, self._rail.sd)
         self.state = "stroke"
         self._stroke.begin(t)
         self.estimator.launched(t)
+
+    def _follow_stroke(self, t: float, f: float) -> None:
+        if self._stroke.follow(t, f):
+            self._stroke_over(t)
 
     def _stroke_over(self, t: float) -> None:
         s = self.settings
@@ -268,11 +337,17 @@ class FlightComputer:
         elif self.state == "wings":
             self._note(t, "motor_on")
             self._command(throttle=self.settings.throttle_level)
+            self.estimator.throttle(t, self.settings.throttle_level)
             self.state, self._last_estimate = "flying", t
         else:
             self._note(t, "rearmed")
+            if self._readiness is not None:
+                self._readiness.forget()
+            self._begun, self._doubts = nan, None
             self.detector.reset()
             self._stroke.rest_again()
+            if self._rail is not None:
+                self._rail.forget()
             self.state = "waiting"
 
     # -- cruise ------------------------------------------------------------------------------------------------------
@@ -305,6 +380,7 @@ class FlightComputer:
         throttle = self._throttle(error, pitch, dt) if self._trusted else self._safe(pitch)
         wing, _, _, roll, engaged = self.commands
         self.commands = (wing, throttle, pitch, roll, engaged)
+        self.estimator.throttle(t, throttle)
 
     def _doubt(self, t: float, valid: bool) -> None:
         """Give up an estimate that stays invalid; take it up again when it has stayed valid."""
@@ -357,6 +433,13 @@ class FlightComputer:
         self.events.append({"t": t, "event": event, **details})
         if len(self.events) > MOST_EVENTS:
             del self.events[0]
+
+
+def _alike(reasons: tuple[str, ...], others: tuple[str, ...] | None) -> bool:
+    """Whether two rows of reasons name the same channels: numbers in them may change."""
+    if others is None:
+        return False
+    return [reason.split(":")[0] for reason in reasons] == [reason.split(":")[0] for reason in others]
 
 
 def _within(value: float, low: float, high: float) -> float:

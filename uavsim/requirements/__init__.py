@@ -14,7 +14,8 @@ A single flight is judged by what asks each flight, `every`; the others are judg
 **A flight without a value** (null in the score, NaN in a row) never helps. It meets no bound of `every`. Of a
 `probability` it counts against what is asked: as no event under `at_least`, as an event under `at_most`. Of a quantile
 it counts as the worst value, +inf under a maximum, -inf under a minimum. A `mean` over flights of which one has no
-value does not exist: the requirement stays undecided, and the number of such flights is said.
+value does not exist: the requirement stays undecided, and the number of such flights is said. Of a `rate_per_hour` it
+counts as one event, unless it has no exposure.
 
 **Exposure** is in hours, of one flight:
 
@@ -44,10 +45,14 @@ Exposure = Literal["armed", "flight", "handling", "vibration", "soft drops", "he
 PACKAGED = Path(__file__).resolve().parent
 OUTCOME = "outcome"  # the one key of the score that is no number and may be asked for
 WINGS = "launch.false_wing_commands"  # without a launch; counted in disturbances only
-COUNTS = ("launch.false_detections", WINGS)  # numbers of events, which a rate may be of
+OF_FLIGHT = ("airspeed.flags", "airspeed.false_flags", "airspeed.losses", "airspeed.hazard")
+COUNTS = ("launch.false_detections", WINGS, *OF_FLIGHT)  # numbers of events, which a rate may be of
 FLOWN = ("armed", "flight")  # exposures of a flight itself
 DISTURBED = ("handling", "vibration", "soft drops", "held load")  # those of disturbances beside it
-ALLOWED = {OUTCOME: FLOWN, "launch.false_detections": ("armed", *DISTURBED), WINGS: DISTURBED}
+ALLOWED = {
+    **{OUTCOME: FLOWN, "launch.false_detections": ("armed", *DISTURBED), WINGS: DISTURBED},
+    **dict.fromkeys(OF_FLIGHT, ("flight",)),
+}
 """Exposures in which something can happen."""
 STATISTICS = ("every", "probability", "p50", "p95", "p99", "mean", "rate_per_hour")
 QUANTILE = re.compile(r"p([0-9]{1,2}(?:\.[0-9]{1,3})?)")

@@ -3,7 +3,8 @@
 A detector alone takes most soft drops along the launch axis for launches. What opens the wings is the function of both:
 the flight computer follows what was recognised to the end of its stroke, and commands the wings only where the speed
 gained until then is that of a launch (`uavsim.onboard.stroke`); else it rearms after a delay, in which it is deaf.
-Decisions are those of `FlightComputer`, bit for bit, at the times k / rate.
+Decisions are those of `FlightComputer`, bit for bit, at the times k / rate, where no offset of the accelerometer has
+been found on the rail: disturbances have none.
 
 In hours of disturbances, after a command it goes on as after a knock: an aircraft whose wings have opened on the rail
 is put back.

@@ -6,9 +6,16 @@ one, and no estimate outside them is valid; which readings are left out for thei
 """
 
 from dataclasses import dataclass
+from math import inf
 from typing import Annotated
 
 from annotated_types import Ge, Interval
+
+from uavsim.onboard.airspeed.head_errors import HeadErrors
+from uavsim.onboard.plausible import LEAST_TEMPERATURE, MOST_TEMPERATURE
+
+ANY = (-inf, inf)  # a range without ends
+NO_ERRORS = HeadErrors()  # both ports read their own pressures
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +56,40 @@ class NoiseModel:
         Age of a reading of specific force at its time stamp, s.
     head_rate : float
         Readings of the head a second, Hz: which of their time stamps are believed.
+    total_range, static_range : tuple of float
+        Pa: a pressure at or beyond an end is no measurement.
+    total_step, static_step : float
+        By which they are rounded, Pa.
+    temperature_range : tuple of float
+        K: a temperature beyond it is no measurement.
+    accelerometer_range : tuple of float
+        m/s²: a specific force at or beyond an end has been clipped.
+    accelerometer_step : float
+        By which it is rounded, m/s².
+    accelerometer_white_sd : float
+        White noise of one reading of f_x by the part alone, without vibration, m/s²: a live part has at least that.
+    side_offset_sd : float
+        Offset of f_y, m/s².
+    own_offset_sd, own_side_offset_sd, own_lift_offset_sd : float
+        Offsets that the part's description allows, m/s²; one that is four times as large is told.
+    accelerometer_wander_sd : float
+        By how much an offset that was found on the rail may have moved since, m/s².
+    rail_elevation : float or None
+        Of the rail as the crew believes it, rad; None: not known, or there is no rail.
+    rail_elevation_sd : float
+        How well it is known, rad; so is the roll.
+    rail_roll : float
+        Roll of the aircraft on it, rad.
+    difference_sd : float
+        What the pair's difference may be at rest where no tare has found it, Pa.
+    covered : bool
+        Whether the head is under its cover in the tare's window; else the tare is taken in the wind.
+    head : HeadErrors
+        What the ports are off by, as a calibration knows it.
+    thermometer_recovery, thermometer_recovery_sd : float
+        Share r of the flow's warming that the thermometer reads, T (1 + 0.2 r M²), and its standard deviation.
+    differential : bool
+        Whether the total pressure is the sum of the static one and of a difference that one sensor reads.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
@@ -70,3 +111,40 @@ class NoiseModel:
     accelerometer_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 1000.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     head_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 100.0
+    total_range: tuple[float, float] = ANY
+    static_range: tuple[float, float] = ANY
+    total_step: Annotated[float, Ge(0.0)] = 0.0
+    static_step: Annotated[float, Ge(0.0)] = 0.0
+    temperature_range: tuple[float, float] = (LEAST_TEMPERATURE, MOST_TEMPERATURE)
+    accelerometer_range: tuple[float, float] = ANY
+    accelerometer_step: Annotated[float, Ge(0.0)] = 0.0
+    accelerometer_white_sd: Annotated[float, Ge(0.0)] = 0.0
+    side_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    own_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    own_side_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    own_lift_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    accelerometer_wander_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    rail_elevation: Annotated[float, Interval(ge=-1.6, le=1.6)] | None = None
+    rail_elevation_sd: Annotated[float, Interval(ge=0.0, le=1.6)] = 0.0087
+    rail_roll: Annotated[float, Interval(ge=-3.2, le=3.2)] = 0.0
+    difference_sd: Annotated[float, Ge(0.0)] = 0.0
+    covered: bool = True
+    head: HeadErrors = NO_ERRORS
+    thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
+    thermometer_recovery_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
+    differential: bool = False
+
+
+def within(ends: tuple[float, float], step: float, least: float, most: float) -> tuple[float, float]:
+    """Return between which readings something has been measured: within the part's ends, and plausible.
+
+    Parameters
+    ----------
+    ends : tuple of float
+        Of the part's range; a reading there, or less than half a step away, has been clipped.
+    step : float
+        By which readings are rounded.
+    least, most : float
+        What is plausible at all (`uavsim.onboard.plausible`).
+    """
+    return max(least, ends[0] + 0.5 * step), min(most, ends[1] - 0.5 * step)

@@ -25,9 +25,12 @@ from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
+from uavsim.onboard.airspeed.lift import Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
+from uavsim.onboard.airspeed.smooth import LEVEL, SmoothTest
+from uavsim.onboard.repeats import LEAST, apart
 
 Kept = tuple[float, float, float, float, float, float, float]
 """When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
@@ -48,6 +51,12 @@ GAP = 0.1  # s without a pressure, after which a test begins anew: ten readings 
 # s. It is averaged over the last 10 s, and only while no more than a usual gust is between V and the force, for a leak
 # must not be learnt. In the first 5 s it is learnt in any case. By hand; docs/faults.md, the leaks, holds the check
 SLOW, LEARNT = 10.0, 5.0
+DOUBTED = 6.0  # nats of `smooth`: a port that wanders from the force and shows the gusts does not leak. By hand
+REOPENED = 2.0  # s after a step of f_x, in which the healthy model knows too little of b to tell a leak. By hand
+RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
+TURNS = (
+    2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
+)
 LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried on after a leak. By hand, as `UNSEEN`
 
 # -- the way back ------------------------------------------------------------------------------------------------------
@@ -56,11 +65,15 @@ LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried
 # that goes on leaking would agree with any airspeed at last. By hand; docs/faults.md, "After a flag"
 AGREE_SD = 5.0 / 3.0
 
-# -- sensors of coarse steps -------------------------------------------------------------------------------------------
+# kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
+UNTAKEN = ("jump", "silent", "invalid", "range")
+ASTRAY = ("drift", "leak", "jump")
+# kinds after which it must show the gusts that are declared: a port that is shut and leaks moves, but shows none
+GUSTLESS = ("frozen", "drift", "leak")
 
-# equal readings in a row that chance makes while the noise is at least half a step. A longer row on the rail shows a
-# coarser sensor, whose readings say less. By hand; test_a_sensor_of_coarse_steps_may_repeat_itself
-FINE = 6
+# s from the last instant at which a live port was the better explanation to the flag. Beyond it an accelerometer that
+# drifts explains a total pressure that stands still in still air as well. By hand
+SLOWLY = 1.0
 
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
 
@@ -78,11 +91,6 @@ BIAS_SD = 0.1  # m/s², of b after the flag, which is taken from the total port'
 LEAST_FLIGHT = 10.0  # m/s, below which no wing flies, and lift says nothing of the angle of attack
 
 
-def apart(usual: int) -> float:
-    """Return how many readings say as much as one, by the longest row of equal ones that a live sensor has given."""
-    return max(1.0, usual / FINE)
-
-
 class TotalWatch:
     """Tests of the total pressure's port.
 
@@ -92,8 +100,8 @@ class TotalWatch:
         What is believed of the air.
     variance, walk : float
         Of a reading's noise, Pa², and random walk of the pair's difference, Pa/√s.
-    usual : int
-        The longest row of equal readings that the live sensor has been seen to give.
+    row, alike : float
+        How often its sensor may repeat a number, and how probable a repetition is (`uavsim.onboard.repeats`).
     offset_sd : float
         Offset of f_x, m/s².
     force_density : float
@@ -104,12 +112,14 @@ class TotalWatch:
     port : PortMonitor
     faulty : bool
         Whether the port is flagged.
+    undecided : bool
+        Whether an accelerometer that drifts would explain the same: in still air the airspeed crept from the force.
     """
 
     __slots__ = (
-        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_p", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
-        "port",
+        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
+        "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough", "_silent",
+        "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -117,21 +127,25 @@ class TotalWatch:
         aided: AidedSettings,
         variance: float,
         walk: float,
-        usual: int = 0,
+        row: float = LEAST,
+        alike: float = 0.0,
         offset_sd: float = 0.0,
         force_density: float = 0.0,
     ) -> None:
         self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
-        self._jumped, self._jumped_at = 0.0, -inf
+        self._jumped, self._jumped_at, self._opened = 0.0, -inf, -inf
+        self._opened_by = aided.bias_sd**2, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
-        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared, offset_sd)
-        self.faulty = self._astray = False
+        self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
+        self.faulty = self._astray = self.undecided = self._silent = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
         self._near, self._taught = 0, 0.0
+        self._pull = Pull()
+        self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
     def take(
@@ -176,11 +190,19 @@ class TotalWatch:
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn) == 0.0
+        gust = spread * dt + self._pull.add(lift, dt)
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, gust, turn) == 0.0
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
-        if self._wanders(v, change - energy.s * dt, test.lost, dt):
+        if self._declared:
+            smooth = self._smooth.add(reading, dt, test.nis, test.spread, self._pull.size < TURNS and t > self._opened)
+            if smooth == 0.0:
+                self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
+            elif smooth > LEVEL:
+                return "leak"
+        wanders = self._wanders(v, change - energy.s * dt, test.lost, dt)
+        if wanders and not (self._declared and self._smooth.evidence < DOUBTED):
             return "leak"
         return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
@@ -202,33 +224,73 @@ class TotalWatch:
         """Be told by which variance, (m/s²)², the push has widened b at `t`, s; b forgets that in its own time."""
         self._jumped, self._jumped_at = self._bias_variance(t) - self._bias_sd**2 + variance, t
 
+    def open_bias(self, t: float, variance: float) -> None:
+        """Be told at `t`, s, that b may have moved by that variance, (m/s²)²."""
+        self._opened_by = self._bias_variance(t), t
+        self.jump(t, variance)
+        self.port.frozen.open_bias(variance)
+        self._taught = min(self._taught, RELEARNT)
+        self._wandering.forget()
+        self._opened = t + REOPENED
+
+    def close_bias(self) -> None:
+        """Be told that b has not moved at the last step."""
+        variance, at = self._opened_by
+        self._jumped, self._jumped_at = variance - self._bias_sd**2, at
+
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""
         since = t - self._jumped_at
         left = self._jumped * exp(-2.0 * since / self._bias_time) if since > 0.0 else self._jumped
         return self._bias_sd * self._bias_sd + left
 
-    def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
-        """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong."""
+    def flag(self, kind: str, energy: EnergyFilter, now: tuple[float, float], density: float, gust: float) -> None:
+        """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong.
+
+        Parameters
+        ----------
+        kind : str
+        energy : EnergyFilter
+        now : tuple of float
+            The instant at which it stands, s, and ∫ f_x dt, m/s.
+        density, gust : float
+            ρ, kg/m³, and the gusts' density, m/s².
+        """
         test = self.port.frozen
-        if kind == "jump":  # the filter has taken nothing of it
-            self._trusted = self._t, self._u, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
-        elif kind != "frozen":  # it had been wrong for a while before the flag
-            before = self._sound if kind == "leak" else self._before[0]
+        trusted, (t, gained) = self._trusted, now
+        if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
+            before = self._before[0]
+            if kind == "leak":
+                before = self._rough if self._smooth.evidence > LEVEL else self._sound
             if before is not NOTHING:
-                self._trusted = before
-        then, u, v, vv, p, self._bias, bb = self._trusted
+                trusted = before
+        if kind in UNTAKEN or trusted is NOTHING:  # the filter has taken nothing of it
+            trusted = t, gained, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
+        then, u, v, vv, p, self._bias, bb = trusted
         speed = max(v, 1.0)
-        since, slope = self._t - then, density * speed
+        since, slope = t - then, density * speed
         if kind == "frozen":
-            self.port.back.flag(self._t, test.held, test.held_variance)
+            self.port.back.flag(t, test.held, test.held_variance)
         else:
-            self.port.back.flag(self._t)
-        self.faulty, self._astray = True, kind in ("drift", "leak")
-        v = v + self._u - u - self._bias * since + (energy.p - p) / slope
+            self.port.back.flag(t)
+        self.faulty, self._astray = True, kind in ASTRAY
+        self._silent = self._declared and kind in GUSTLESS
+        self._smooth.flag(t)
+        self.undecided = kind == "frozen" and not self._declared and since > SLOWLY
+        v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
         energy.coast_from(v, vv, self._bias, bb, since)
+        self._p = energy.p
+
+    def flag_in_stroke(
+        self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
+    ) -> None:
+        """Flag a port that has not risen in the stroke; the pressure in it, and V by the force, with their variance."""
+        self.port.back.flag(t, *held)
+        self.faulty = self._astray = True
+        self.undecided, self._bias = False, 0.0
+        energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
 
     def carry(self, energy: EnergyFilter, dt: float, gained: float, variance: float, density: float) -> None:
@@ -237,8 +299,11 @@ class TotalWatch:
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
+        lives = not self._silent or self._smooth.lives(t, reading)
         if self._astray:
             spread = min(spread, AGREE_SD * AGREE_SD)
+        if not lives:
+            difference = inf  # a port that shows no gusts agrees with nothing
         if not self.port.back.hear(t, reading, pressure, difference, spread):
             return False
         self.faulty = False
@@ -254,7 +319,7 @@ class StaticWatch:
     ----------
     variance, walk : float
         Of a reading's noise, Pa², and random walk of the sensor, Pa/√s.
-    usual : int
+    row, alike : float
         As of `TotalWatch`.
     offset_sd : float
         Offset of f_z, m/s².
@@ -267,9 +332,11 @@ class StaticWatch:
 
     __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty")
 
-    def __init__(self, variance: float, walk: float, usual: int = 0, offset_sd: float = 0.0) -> None:
-        self._variance, self._offset_sd = variance * apart(usual), offset_sd
-        self._back = Readmission(variance, walk, usual)
+    def __init__(
+        self, variance: float, walk: float, row: float = LEAST, alike: float = 0.0, offset_sd: float = 0.0
+    ) -> None:
+        self._variance, self._offset_sd = variance * apart(alike), offset_sd
+        self._back = Readmission(variance, walk, row)
         self._test, self._t, self.faulty = ClimbTest(variance, 0.0, offset_sd), -inf, False
 
     @property
@@ -312,14 +379,14 @@ class StaticWatch:
         evidence = self._test.add(reading, dt, lift, density * GRAVITY)
         return "frozen" if evidence > SHUT else ""
 
-    def flag(self, kind: str, energy: EnergyFilter, density: float, bias: float) -> None:
-        """Flag the port; if it was shut, put the filter to where the climb before that would have led."""
+    def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
+        """Flag the port at `t`, s; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
         self.faulty = True
         if kind != "frozen":
-            self._back.flag(self._t)
+            self._back.flag(t)
             return
-        self._back.flag(self._t, test.held, test.held_variance)
+        self._back.flag(t, test.held, test.held_variance)
         weight, v = density * GRAVITY, max(energy.v, 1.0)
         off = weight * CLIMB_SD
         p = test.held - weight * test.climb_then * test.since
@@ -328,6 +395,22 @@ class StaticWatch:
             slope=(GRAVITY * test.climb_then / v, (GRAVITY * CLIMB_SD / v) ** 2),
             bias=(bias, BIAS_SD * BIAS_SD),
             tied=-off * test.since * GRAVITY * CLIMB_SD / v,
+            density=density,
+            unseen=UNSEEN,
+        )
+
+    def flag_at_rest(
+        self, energy: EnergyFilter, t: float, held: tuple[float, float], lost: float, density: float
+    ) -> None:
+        """Flag a port that was shut before the launch: half of what V has lost is the height that it hides."""
+        self.faulty = True
+        self._back.flag(t, *held)
+        hidden = -0.5 * density * max(energy.v, 1.0) * lost
+        energy.leave_static(
+            static=(held[0] - hidden, hidden * hidden),
+            slope=(energy.s, 1.0),
+            bias=(0.0, BIAS_SD * BIAS_SD),
+            tied=0.0,
             density=density,
             unseen=UNSEEN,
         )
