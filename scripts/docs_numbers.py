@@ -377,6 +377,7 @@ def main() -> int:
     for one in () if options.pages else chosen:
         print(f"{one.name}, about {one.minutes:g} min", flush=True)
         write(run(one))
+        write_pages(blocks)
     write_pages(blocks)
     return 0
 
