@@ -215,7 +215,8 @@ class AirDataHead:
         """Temperature at the thermometer, K: the flow warms it by a share of 0.2 M²."""
         if self._recovery == 0.0:
             return temperature
-        return temperature * (1.0 + self._recovery * ((total / static) ** (2.0 / 7.0) - 1.0))
+        stagnation: float = (total / static) ** (2.0 / 7.0)
+        return temperature * (1.0 + self._recovery * (stagnation - 1.0))
 
     def _mean_of_total(self, middle: float) -> tuple[float, float]:
         return self._mean(self._total_felt, middle, self.total.half_window), self._temperature
