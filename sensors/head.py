@@ -22,7 +22,7 @@ with x in steps and Σ' the trapezoidal sum between whole steps: vibration on th
 part, and a pressure that is no number spoils the windows it is in and no others.
 """
 
-from math import inf, nan, pow
+from math import inf, nan
 
 from sensors.clock import Clock
 from sensors.faults import value_faults
@@ -118,7 +118,7 @@ class AirDataHead:
         felt = settings.acceleration_sensitivity
         self._membranes = (*self.total.acceleration, *self.static.acceleration) if felt else (0.0,) * 6
         ports = not (self._total_error is None and self._static_error is None)
-        behind = self._lines != (None, None) or any(self._membranes) or settings.swapped_tubes
+        behind = self._lines != (None, None) or any(self._membranes)
         self.full = behind or (ports and not hasattr(surroundings, "flow_at"))
         of_total, of_static = (self._total_read, self._static_read) if ports else (self._total_port, self._static_port)
         self._total_truth = self._mean_of_total if self.full else of_total
@@ -215,7 +215,8 @@ class AirDataHead:
         """Temperature at the thermometer, K: the flow warms it by a share of 0.2 M²."""
         if self._recovery == 0.0:
             return temperature
-        return temperature * (1.0 + self._recovery * (pow(total / static, 2.0 / 7.0) - 1.0))
+        stagnation: float = (total / static) ** (2.0 / 7.0)
+        return temperature * (1.0 + self._recovery * (stagnation - 1.0))
 
     def _mean_of_total(self, middle: float) -> tuple[float, float]:
         return self._mean(self._total_felt, middle, self.total.half_window), self._temperature

@@ -752,11 +752,11 @@ class AidedFilter(Estimator):
             energy.widen_bias(size * size)
             ports.total.open_bias(self.time, size * size)
         elif to > shock.due:
-            kind = shock.judge(energy.b, energy.bb)
-            if kind == "offset":
-                ports.tell(self._t, "airspeed_fault", "accelerometer", kind)
-            elif kind == "felt":
-                ports.total.close_bias()
+            offset, moved = shock.judge(energy.b, energy.bb)
+            if offset:
+                ports.tell(self._t, "airspeed_fault", "accelerometer", "offset")
+            else:
+                ports.total.close_bias(moved * moved)
 
     def _advance(self, to: float) -> None:
         """Predict to a later time; an earlier one leaves the filter where it is."""
@@ -764,7 +764,7 @@ class AidedFilter(Estimator):
         if not dt > 0.0:
             return
         gained, variance = self._go(to, dt)
-        if self.ports.total.faulty:
+        if self.ports.total.faulty and self.ports.total.coasts:
             self.ports.total.carry(self.energy, dt, gained, variance, self._air.density)
         else:
             self.energy.predict(dt, gained, variance, self._air.density, self._force > self._on_rail)
