@@ -36,6 +36,7 @@ LAPSE, CLIMB = 0.0065, 3.0  # K/m of the standard atmosphere; m/s, of an aircraf
 FLIGHT = 30.0  # s between tare and end for which a ramp of the temperature is covered by a random walk
 CALIBRATED = 1e-3  # of q_c, what a calibration of a head against a reference tube leaves: 0.05 % of the airspeed
 CALIBRATED_SHARE = 0.1  # what it leaves of what angles and propeller make
+RECOVERY_SD = 0.1  # of a thermometer's recovery factor, which is read off a table
 USUAL_MACH = 0.3  # at which an uncalibrated dependence on the Mach number counts
 COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
 
@@ -178,6 +179,8 @@ class HeadKnowledge:
     walk : float
         Random walk of the pair's difference, Pa/√s: that of both parts, and what both dies make of a climb's and of
         their own warmth (`_warming`).
+    thermometer_recovery, thermometer_recovery_sd : float
+        Share of the flow's warming that the thermometer reads, and its standard deviation.
     difference_sd : float
         What the pair's difference may be at rest where no tare has found it, Pa.
     """
@@ -190,6 +193,8 @@ class HeadKnowledge:
     column: float
     column_sd: float
     walk: float
+    thermometer_recovery: float
+    thermometer_recovery_sd: float
     difference_sd: float
 
 
@@ -246,6 +251,8 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         column=column,
         column_sd=COLUMN_SD * abs(column),
         walk=hypot(total.walk, static.walk, *(_warming(part, settings.thermal) for part in parts)),
+        thermometer_recovery=settings.thermometer_recovery,
+        thermometer_recovery_sd=RECOVERY_SD if settings.thermometer_recovery > 0.0 else 0.0,
         difference_sd=hypot(total.offset_sd, static.offset_sd),
     )
 
