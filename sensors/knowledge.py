@@ -17,6 +17,7 @@ from math import exp, hypot, inf, sqrt
 from sensors.accelerometer_description import AccelerometerDescription
 from sensors.mounting import attitude, product, transposed
 from sensors.pneumatics import GAMMA, GAS_CONSTANT, STANDARD, laminar_lag
+from sensors.port_calibration import CALIBRATED, CALIBRATED_SHARE, USUAL_MACH, WORDS, port_calibration
 from sensors.pressure_description import PressureDescription
 from sensors.probe import LIMITS, static_port, total_port
 from sensors.settings import (
@@ -34,10 +35,7 @@ WARMTH_SD = 15.0  # K, of a die about 25 °C beside its own heat: -20 … 70 °C
 PLACE = 2e4  # Pa, between a place and where a part's accuracy is stated: 70 … 110 kPa are within one of them
 LAPSE, CLIMB = 0.0065, 3.0  # K/m of the standard atmosphere; m/s, of an aircraft that climbs to its cruise
 FLIGHT = 30.0  # s between tare and end for which a ramp of the temperature is covered by a random walk
-CALIBRATED = 1e-3  # of q_c, what a calibration of a head against a reference tube leaves: 0.05 % of the airspeed
-CALIBRATED_SHARE = 0.1  # what it leaves of what angles and propeller make
 RECOVERY_SD = 0.1  # of a thermometer's recovery factor, which is read off a table
-USUAL_MACH = 0.3  # at which an uncalibrated dependence on the Mach number counts
 COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
 
 
@@ -144,6 +142,9 @@ class PortKnowledge:
     position_sd, alpha_sd, alpha2_sd, beta2_sd, slipstream_sd : float
         Standard deviations of the coefficients: of `error` with `error_mach2`, of the three of the angles, and of both
         slipstreams as a share of them.
+    exact : bool
+        Whether the coefficients are those of the unit that flies: what a calibration in the simulation finds is drawn
+        about them. Those of a file have their errors already.
     """
 
     limit: float
@@ -159,6 +160,7 @@ class PortKnowledge:
     alpha2_sd: float
     beta2_sd: float
     slipstream_sd: float
+    exact: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,7 +260,9 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
 
 
 def _known_of_ports(settings: AirDataSettings) -> PortKnowledge:
-    """Return what is known of the ports' errors: of a unit that was calibrated, or their size alone."""
+    """Return what is known of the ports' errors: of a unit that was calibrated, of a file, or their size alone."""
+    if settings.calibration not in WORDS:
+        return _read_of_ports(settings)
     s, total = settings.static_port, settings.total_port
     limit = LIMITS.get(total.probe, inf)
     if settings.calibration == "unit":
@@ -277,6 +281,7 @@ def _known_of_ports(settings: AirDataSettings) -> PortKnowledge:
             alpha2_sd=CALIBRATED_SHARE * abs(s.error_alpha2),
             beta2_sd=CALIBRATED_SHARE * abs(s.error_beta2),
             slipstream_sd=CALIBRATED_SHARE,
+            exact=True,
         )
     mach2 = s.error_mach2 * USUAL_MACH**2
     return PortKnowledge(
@@ -293,6 +298,27 @@ def _known_of_ports(settings: AirDataSettings) -> PortKnowledge:
         alpha2_sd=abs(s.error_alpha2),
         beta2_sd=abs(s.error_beta2),
         slipstream_sd=1.0,
+    )
+
+
+def _read_of_ports(settings: AirDataSettings) -> PortKnowledge:
+    """Return what a calibration's file says of the ports' errors; of what it does not hold, the size alone."""
+    found, total = port_calibration(settings.calibration), settings.total_port
+    blown = found.slipstream or (total.slipstream, settings.static_port.slipstream, 1.0)
+    return PortKnowledge(
+        limit=LIMITS.get(total.probe, inf) if found.limit is None else found.limit,
+        error=found.error,
+        error_alpha=found.error_alpha,
+        error_alpha2=found.error_alpha2,
+        error_beta2=found.error_beta2,
+        error_mach2=found.error_mach2,
+        total_slipstream=blown[0],
+        static_slipstream=blown[1],
+        position_sd=found.position_sd,
+        alpha_sd=found.alpha_sd,
+        alpha2_sd=found.alpha2_sd,
+        beta2_sd=found.beta2_sd,
+        slipstream_sd=blown[2],
     )
 
 

@@ -14,7 +14,6 @@ from sensors.accelerometer_description import AccelerometerDescription, Accelero
 from sensors.pressure_description import PressureDescription, PressureErrors
 from sensors.unit import Unit
 
-Calibration = Literal["unit", "none"]
 Tare = Literal["covered", "open", "none"]
 Phase = Literal["always", "waiting", "stroke", "flight"]
 Band = Annotated[float, Interval(gt=0.0, lt=500.0)]  # Hz, below half of the plant's 1 kHz
@@ -426,10 +425,11 @@ class AirDataSettings:
         Length of the mean that the tare is, s.
     cover_off : float
         Time before release at which the tare ends and the cover, if there is one, is taken off, s.
-    calibration : {"unit", "none"}
+    calibration : str
         What is known of both ports' errors. "unit": a calibration of this head found them, with an error of its own (a
         thousandth of the impact pressure, and a tenth of what each angle and the propeller make); what the filter knows
-        is taken off. "none": nothing but their size is known.
+        is taken off. "none": nothing but their size is known. Or the path of a calibration's file, coefficients in
+        TOML or a table in CSV: what it says is known, whatever the simulated ports do.
     thermometer_recovery : float
         Share r of the flow's warming that the thermometer feels, T (1 + 0.2 r M²): 0 inside a fuselage, 0.8 … 0.9 in
         the stream.
@@ -453,7 +453,7 @@ class AirDataSettings:
     thermometer_faults: tuple[Fault, ...] = ()
     batch: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     position: tuple[Arm, Arm, Arm] = (0.65, 0.0, 0.0)
-    calibration: Calibration = "unit"
+    calibration: str = "unit"
     thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)

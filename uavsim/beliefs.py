@@ -123,11 +123,12 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
 
 
 def _ports(head: HeadKnowledge, belief: MismatchSettings, calibration: Calibration) -> HeadErrors:
-    """What is believed of both ports' errors: as the calibration found them."""
+    """What is believed of both ports' errors: as a calibration of the unit finds them, or a file has them."""
     ports, (error, alpha, alpha2, beta2, blown) = head.ports, calibration.ports
     known = belief.position
-    if head.ports.error == head.ports.error_alpha == head.ports.error_alpha2 == head.ports.error_beta2 == 0.0:
-        error = alpha = alpha2 = beta2 = blown = 0.0  # nothing was found
+    nothing = ports.error == ports.error_alpha == ports.error_alpha2 == ports.error_beta2 == 0.0
+    if nothing or not ports.exact:  # a file's numbers have their errors in them
+        error = alpha = alpha2 = beta2 = blown = 0.0
     slipstream = known * (1.0 + blown * ports.slipstream_sd)
     return HeadErrors(
         limit=ports.limit,

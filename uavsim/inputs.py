@@ -1,4 +1,4 @@
-"""Outside inputs of a flight: presets and aircraft that a user keeps in files of their own.
+"""Outside inputs of a flight: presets, aircraft and a calibration that a user keeps in files of their own.
 
 They are read once, when the scenario is, and travel with it as they were read (`sensors.sheet.Sheet`,
 `uavsim.plants.airframe.Airframe`). A flight's folder holds them in ``inputs/KEY/``, and its ``scenario.toml`` names
@@ -23,7 +23,8 @@ HASHES = "inputs"
 """The scenario's table of hashes, by path below the flight's folder."""
 AIRCRAFT = "aircraft.model"
 PRESETS = ("accelerometer.preset", "air_data.total.preset", "air_data.static.preset")
-KEYS = (AIRCRAFT, *PRESETS)
+CALIBRATION = "air_data.calibration"
+KEYS = (AIRCRAFT, *PRESETS, CALIBRATION)
 
 
 def value_of(values: Mapping[str, Any], key: str) -> Any:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from annotated_types import Interval
 
-from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
+from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings, port_calibration
 from sensors.catalogue import captured
 from sensors.choice import nearest, shown
 from sensors.data_files import parse_toml, read_toml
@@ -572,7 +572,11 @@ def _airframe(model: str) -> str:
     return model if folder.parent == hangar().resolve() else read_airframe(folder)
 
 
-_CAPTURES: dict[str, Callable[[str], str]] = {inputs.AIRCRAFT: _airframe, **dict.fromkeys(inputs.PRESETS, captured)}
+_CAPTURES: dict[str, Callable[[str], str]] = {
+    inputs.AIRCRAFT: _airframe,
+    **dict.fromkeys(inputs.PRESETS, captured),
+    inputs.CALIBRATION: port_calibration.captured,
+}
 """What reads what comes from outside, by its key."""
 
 
