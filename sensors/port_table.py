@@ -5,7 +5,8 @@ With shares of the impact pressure q_c, at Mach number M and angles α, β in ra
     static_share    c₀ + c_α z + c_αα z² + c_ββ y² + c_M M²          z = sin α cos β,  y = sin β
     total_share     1 − k (θ − 10°)² beyond 10°                      k = 0.01/(θ_1 − 10°)²
 
-The law is linear in the c and in k. Of a table at one Mach number c_M is 0: what it makes there is in c₀.
+The law is linear in the c and in k. Of a table at one Mach number c_M is 0: what it makes there is in c₀. A table that
+ends before 20° of flow does not tell θ_1.
 """
 
 import csv
@@ -19,6 +20,7 @@ MOST_ROWS = 20_000  # 40 Mach numbers, 25 angles of attack and 20 sideslips
 FREE = radians(10.0)  # up to which a total port loses nothing, as in `sensors.probe`
 LEAST_WIDTH = 1e-3  # rad, of an axis whose coefficients can be told from c₀: 0.06°
 LEAST_MACH2 = 1e-4  # of M², the same: Mach 0.01
+LEAST_ANGLE = radians(20.0)  # to which a table must reach to tell θ_1: where a plain tube loses its hundredth
 COEFFICIENTS = 5
 UNITS = ("deg", "rad", "percent", "pa")
 _BOUNDS = {
@@ -38,14 +40,14 @@ class Fit:
     ----------
     static : tuple of float
         c₀, c_α, c_αα, c_ββ, c_M.
-    limit : float
-        θ_1, rad; infinite of a total port that loses nothing.
+    limit : float or None
+        θ_1, rad; infinite of a total port that loses nothing; None where the table does not tell.
     left : float
         Root of the mean square of what the law leaves of both ports, a share of q_c.
     """
 
     static: tuple[float, float, float, float, float]
-    limit: float
+    limit: float | None
     left: float
 
 
@@ -72,11 +74,13 @@ def fit(content: str) -> Fit:
     if np.linalg.matrix_rank(design) < len(columns):
         raise ValueError("does not tell apart what alpha, beta and mach make: give a grid of them")
     found = np.linalg.lstsq(design, static, rcond=None)[0]
-    beyond = np.maximum(0.0, np.arccos(np.clip(np.cos(alpha) * np.cos(beta), -1.0, 1.0)) - FREE) ** 2
-    k = max(0.0, float(beyond @ (1.0 - total) / (beyond @ beyond))) if beyond.any() else 0.0
+    angle = np.arccos(np.clip(np.cos(alpha) * np.cos(beta), -1.0, 1.0))
+    beyond, told = np.maximum(0.0, angle - FREE) ** 2, bool(angle.max() >= LEAST_ANGLE)
+    k = max(0.0, float(beyond @ (1.0 - total) / (beyond @ beyond))) if told else 0.0
     left = (float(np.sqrt(np.mean(each**2))) for each in (design @ found - static, 1.0 - k * beyond - total))
     c0, c1, c2, cb, *cm = (float(value) for value in found)
-    return Fit((c0, c1, c2, cb, sum(cm)), FREE + sqrt(0.01 / k) if k > 0.0 else inf, hypot(*left))
+    limit = None if not told else FREE + sqrt(0.01 / k) if k > 0.0 else inf
+    return Fit((c0, c1, c2, cb, sum(cm)), limit, hypot(*left))
 
 
 def _rows(content: str) -> list[list[float]]:

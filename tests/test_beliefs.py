@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,7 +84,7 @@ KNOWN = [("known_of_accelerometer", f"{field.name}") for field in fields(Acceler
     )
     for field in fields(kind)
     if not path or field.name not in ("walk", "column", "offset_sd")  # of the pair's difference, which the head has
-    if field.name not in ("total", "static", "ports")
+    if field.name not in ("total", "static", "ports", "exact")  # the last is no number but whether errors are drawn
 ]
 
 
@@ -138,6 +139,31 @@ def test_a_calibration_finds_the_ports_errors_to_what_is_believed() -> None:
     kept = believed_noise(scenario("mismatch.position=0", "mismatch.position_sd=0"), draw(plain).calibration).head
     assert (kept.error, kept.error_beta2, kept.position_sd, kept.beta2_sd) == (0.0, 0.0, 0.0, 0.0)
     assert calibrated(plain, Streams(1, 0)) == calibrated(plain, Streams(1, 0))
+
+
+def test_a_calibrations_file_is_believed_as_it_stands_in_each_flight(tmp_path: Path) -> None:
+    """No error is drawn about its numbers, for they have theirs; its deviations are what is not known."""
+    file = tmp_path / "head.toml"
+    file.write_text(
+        'kind = "head-calibration"\nsource = "a flight"\n[static]\nerror = 0.03\nerror_sd = 0.004\n'
+        "error_alpha_per_rad = 0.1\nerror_alpha_sd_per_rad = 0.02\nerror_alpha2_per_rad2 = -0.6\n"
+        "error_alpha2_sd_per_rad2 = 0.05\nerror_beta2_per_rad2 = -0.5\nerror_beta2_sd_per_rad2 = 0.04\n"
+        "error_mach2 = 0.0\nerror_mach2_sd = 0.0\n",
+        encoding="utf-8",
+    )
+    own = scenario(f"air_data.calibration={file}")
+    heads = [believed_noise(own, draw(own.with_seed(seed)).calibration).head for seed in range(3)]
+    assert heads[0] == heads[1] == heads[2]
+    assert (heads[0].error, heads[0].error_alpha, heads[0].error_alpha2, heads[0].error_beta2) == (
+        0.03,
+        0.1,
+        -0.6,
+        -0.5,
+    )
+    assert (heads[0].position_sd, heads[0].alpha_sd, heads[0].alpha2_sd, heads[0].beta2_sd) == (0.004, 0.02, 0.05, 0.04)
+    kept = scenario(f"air_data.calibration={file}", "mismatch.position=0.5", "mismatch.position_sd=0")
+    assert believed_noise(kept).head.error == 0.015
+    assert believed_noise(kept).head.position_sd == 0.0
 
 
 def test_turbulence_is_that_of_the_specification() -> None:

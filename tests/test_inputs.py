@@ -21,11 +21,26 @@ from uavsim.plants.hangar import hangar
 from uavsim.scenario import Scenario, load_scenario
 
 SHORT = ("duration=8",)
+HEAD = """
+kind = "head-calibration"
+source = "a reference tube beside it"
+[static]
+error = 0.021
+error_sd = 0.001
+error_alpha_per_rad = 0.0
+error_alpha_sd_per_rad = 0.002
+error_alpha2_per_rad2 = -0.5
+error_alpha2_sd_per_rad2 = 0.06
+error_beta2_per_rad2 = -0.6
+error_beta2_sd_per_rad2 = 0.06
+error_mach2 = 0.0
+error_mach2_sd = 0.0
+"""
 
 
 @pytest.fixture
 def own(tmp_path: Path) -> Path:
-    """Return a folder with an aircraft, two presets of the same name and a file that nobody names."""
+    """Return a folder with an aircraft, a calibration, two presets of the same name and a file that nobody names."""
     aircraft = tmp_path / "own" / "bird"
     shutil.copytree(hangar() / "fw8", aircraft)
     (aircraft / "fw8.xml").rename(aircraft / "bird.xml")
@@ -36,6 +51,7 @@ def own(tmp_path: Path) -> Path:
         file.parent.mkdir()
         file.write_text(text.replace('part = "', f'part = "{place} {resolution} ', 1), encoding="utf-8")
     shutil.copy(FOLDER / "adxl345.toml", tmp_path / "own" / "axes.toml")
+    (tmp_path / "own" / "head.toml").write_text(HEAD, encoding="utf-8")
     return tmp_path / "own"
 
 
@@ -47,6 +63,7 @@ def overrides(own: Path) -> list[str]:
         f"accelerometer.preset={own / 'axes.toml'}",
         f"air_data.total.preset={own / 'total' / 'mine.toml'}",
         f"air_data.static.preset={own / 'static' / 'mine.toml'}",
+        f"air_data.calibration={own / 'head.toml'}",
     ]
 
 
@@ -66,6 +83,7 @@ def test_all_that_was_read_is_kept_and_no_more(kept: Path) -> None:
         "inputs/accelerometer.preset/axes.toml",
         "inputs/air_data.total.preset/mine.toml",
         "inputs/air_data.static.preset/mine.toml",
+        "inputs/air_data.calibration/head.toml",
     }
     recorded = tomllib.loads((kept / "scenario.toml").read_text(encoding="utf-8"))
     assert recorded["aircraft"]["model"] == "inputs/aircraft.model/bird"
@@ -83,7 +101,10 @@ def test_it_flies_again_and_replays_from_its_folder_wherever_that_is(kept: Path,
 
 
 @pytest.mark.parametrize("change", ["append", "remove", "link", "unlisted"])
-@pytest.mark.parametrize("file", ["air_data.static.preset/mine.toml", "aircraft.model/bird/systems/wing.xml"])
+@pytest.mark.parametrize(
+    "file",
+    ["air_data.static.preset/mine.toml", "aircraft.model/bird/systems/wing.xml", "air_data.calibration/head.toml"],
+)
 def test_a_copy_that_was_changed_is_refused(kept: Path, tmp_path: Path, change: str, file: str) -> None:
     target = kept / "inputs" / file
     if change == "append":
@@ -148,6 +169,17 @@ def test_tables_that_are_none(tmp_path: Path, table: str) -> None:
     )
     with pytest.raises(ValueError, match=r"inputs must be a table|is no file of inputs/KEY/"):
         load_scenario(file)
+
+
+def test_a_calibration_that_is_wrong_is_one_line_and_nothing_is_written(own: Path, tmp_path: Path) -> None:
+    head = own / "head.toml"
+    head.write_text(HEAD.replace("error_alpha_per_rad", "error_alpha_per_deg"), encoding="utf-8")
+    with pytest.raises(
+        ValueError, match=r"^--set: air_data\.calibration: head\.toml: key .* has the wrong unit"
+    ) as told:
+        uavsim.fly("catapult", overrides=overrides(own)).save(tmp_path / "kept")
+    assert "\n" not in str(told.value)
+    assert not (tmp_path / "kept").exists()
 
 
 def test_value_of_what_is_not_there() -> None:
