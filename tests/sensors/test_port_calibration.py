@@ -78,6 +78,13 @@ def test_coefficients_are_read_as_they_are_written(tmp_path: Path) -> None:
     assert read_coefficients(short) == replace(FOUND, limit=None, slipstream=None)
 
 
+def test_the_documentations_example_is_a_calibration() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "sensors.md").read_text(encoding="utf-8")
+    example = page.partition("### A calibration of your own")[2].partition("```toml\n")[2].partition("```")[0]
+    found = read_coefficients(example)
+    assert (found.error, found.alpha2_sd, found.slipstream) == (0.021, 0.1, (0.05, 0.04, 0.1))
+
+
 def test_a_file_is_what_is_known_whatever_the_simulated_ports_do(tmp_path: Path) -> None:
     path = written(tmp_path, GOOD)
     ports = known_of_head(AirDataSettings(calibration=path, static_port=PORT)).ports

@@ -676,6 +676,7 @@ BROKEN = [
     (LSM, 'document = "', 'document = "" #', "key document is empty"),
     (BMP, 'name = "x1/x1"\n', "", "key modes.name (mode 1) is missing"),
     (BMP, "noise_pa = 3.7", "noise_pa = 3.7\ncolour = 1", "key 'modes.colour' is unknown; nearest: modes."),
+    (BMP, "range_pa = [30000, 125000]\n", "", "key values.range_pa is missing"),
     # units
     (LSM, "offset_mg = [20", "offset_ug = [20",
      "'values.offset_ug' has the wrong unit; wanted: mg, as values.offset_mg"),

@@ -75,6 +75,7 @@ DRIED = 0.02  # share of the vapour that may be lost before it is refused: two l
 
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
 _TURN = ("air/p-rad_sec", "air/q-rad_sec", "air/r-rad_sec")  # of the air, which an aircraft's damping may read
+POINT_MASS = "inertia/pointmass-weight-lbs"  # and the number of it
 INCHES = 12.0  # in a foot
 STILL = 1e-4  # in/s of airspeed, below which its quotient with the Mach number is not taken for the speed of sound
 BEYOND = 1e11  # (in/s)², 8 km/s beside the centre of gravity: nothing turns like that but what is about to diverge
@@ -321,6 +322,8 @@ class JsbsimPlant:
                 raise ValueError(f"{where} is no property of {self.settings.aircraft.model!r}{hint}")
             if "W" not in access:
                 raise ValueError(f"{where} is read-only in JSBSim")
+            if name.startswith(POINT_MASS) and value < 0.0:  # the body as a whole may pass for one all the same
+                raise ValueError(f"{where} = {value:g}: is a mass and must be at least 0")
             self._set(name, value)
 
     def _place_of(self, position: Vector) -> Vector:
