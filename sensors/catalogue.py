@@ -130,7 +130,7 @@ def path_of(name: str) -> Path:
     if not name.endswith(".toml") and not any(separator in name for separator in separators):
         return FOLDER / f"{choose('preset', name, presets())}.toml"
     path = Path(name)
-    if not path.is_file():
+    if not os.path.isfile(name):  # pathlib's raises for a name that is too long
         raise ValueError(f"preset {shown(name)} is unknown: there is no such file")
     return path
 

@@ -134,7 +134,7 @@ def _path_of(name: str) -> Path:
             raise ValueError(f"{shown(name)} is no calibration: its file's name must end in .toml or .csv")
         choose("calibration", name, (*WORDS, "FILE.toml", "FILE.csv"))
     path = Path(name)
-    if not path.is_file():
+    if not os.path.isfile(name):  # pathlib's raises for a name that is too long
         raise ValueError(f"calibration {shown(name)} is unknown: there is no such file")
     return path
 

@@ -204,6 +204,8 @@ def test_paths_that_are_none(tmp_path: Path) -> None:
         (str(tmp_path / "mine.yaml"), "must end in .toml or .csv"),
         (str(tmp_path / "missing.toml"), "there is no such file"),
         (str(tmp_path / "folder.toml"), "there is no such file"),
+        ("x" * 300 + ".toml", "there is no such file"),
+        ("x\0.csv", "there is no such file"),
         (large, "large.toml: is larger than"),
         (str(binary), "binary.toml: is not text in UTF-8"),
     ):

@@ -849,6 +849,11 @@ def test_a_file_that_is_not_there_is_one_line(tmp_path, monkeypatch, name):
     assert "\n" not in str(caught.value)
 
 
+def test_a_name_too_long_for_the_system_is_one_line():
+    with pytest.raises(ValueError, match=r"^preset '.{,60}' is unknown: there is no such file$"):
+        preset("x" * 300 + ".toml")
+
+
 def test_files_that_are_no_text_or_no_toml_are_one_line(tmp_path):
     path = tmp_path / "odd.toml"
     for content, message in (
