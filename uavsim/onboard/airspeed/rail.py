@@ -16,6 +16,7 @@ from math import hypot, inf, isfinite, nan, sqrt
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row
+from uavsim.onboard.stamps import JUMP
 
 # s without a reading, after which a sensor is silent. Readings that are lost by chance, up to 7 in 10 at 100 Hz, make
 # such a pause once in 10⁸; more is a fault. By hand
@@ -146,11 +147,14 @@ class RailCheck:
         if self._first == inf:
             self._first = t
         total, static, warmth = self.sensors.values()
-        total.add(t, p_total, t_total > self._total_end)
-        static.add(t, p_static, t_static > self._static_end)
-        warmth.add(t, temperature, temperature == temperature or t_static > self._static_end)
-        self._total_end = max(self._total_end, t_total)
-        self._static_end = max(self._static_end, t_static)
+        t_total, t_static = min(t_total, t), min(t_static, t)  # no conversion ends later than its reading
+        new_total = not self._total_end - JUMP < t_total <= self._total_end
+        new_static = not self._static_end - JUMP < t_static <= self._static_end
+        total.add(t, p_total, new_total)
+        static.add(t, p_static, new_static)
+        warmth.add(t, temperature, temperature == temperature or new_static)
+        self._total_end = t_total if new_total else self._total_end
+        self._static_end = t_static if new_static else self._static_end
         if t <= self._tare_end and -inf < p_total - p_static < inf:
             self._sum += p_total - p_static
             self._count += 1
