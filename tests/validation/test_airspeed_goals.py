@@ -14,7 +14,9 @@ CALM = EstimatorSettings(kind="aided", wind_sd=0.2)
 GUSTY = replace(CALM, wind_sd=1.0, aided=AidedSettings(gust_sd=1.0))
 
 
-@pytest.mark.parametrize("air", [CALM, GUSTY], ids=["calm", "gusty"])
+@pytest.mark.parametrize(
+    "air", [pytest.param(CALM, id="calm", marks=pytest.mark.certify), pytest.param(GUSTY, id="gusty")]
+)
 @pytest.mark.parametrize("mode", MODES)
 def test_matched(mode, air):
     """RMSE ≤ 1.05 √PCRB from 150 ms after the launch, NIS 0.97–1.03, NEES 0.9–1.1, inside its band at 92 % of times.

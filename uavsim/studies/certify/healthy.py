@@ -70,6 +70,7 @@ HOLM = 0.01
 TIMES_BEFORE, TIMES_RMSE, TIMES_BOUND = 1.2, 1.3, 1.1
 FEWEST_IN_A_CELL = 12  # flights of a pair of levels below which nothing could be shown
 WORST = 12
+NAMED = 6  # levels that a check names
 
 
 def combination(number: int) -> dict[str, str]:
@@ -279,6 +280,12 @@ def _readiness(flown: Sequence[Row]) -> list[Check]:
     return [Check("not ready though nothing is broken", "told, none", found, wrong == 0)]
 
 
+def _some(names: Sequence[str]) -> str:
+    """Return the first of some names and how many more there are."""
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + more if names else "none"
+
+
 def _coverage(levels: Sequence[dict[str, Any]]) -> list[Check]:
     """Coverage of ±1.96 sd of each level, the flight being the unit."""
     checks = []
@@ -293,7 +300,7 @@ def _coverage(levels: Sequence[dict[str, Any]]) -> list[Check]:
             few = any(row["flights"] < FEWEST for row in levels)
             values = [row[f"{phase}.{key}"] for row in known]
             spread = f"{min(values):.3f} … {max(values):.3f}" if values else "none"
-            found = f"{spread}; outside: {', '.join(outside) if outside else 'none'}"
+            found = f"{spread}; outside: {_some(outside)}"
             met = None if not known or (few and not outside) else not outside
             wanted = f"{LOW:.2f} … {HIGH:.2f}, calm ≥ {LOW:.2f}"
             note = f"levels of fewer than {FEWEST} flights" if few else ""
@@ -340,15 +347,15 @@ def _fat(levels: Sequence[dict[str, Any]], before: dict[str, Any] | None) -> lis
         least = [row for row in levels if row[f"{phase}.valid"] is not None and row[f"{phase}.valid"] < LEAST_VALID]
         values = [row[f"{phase}.valid"] for row in levels if row[f"{phase}.valid"] is not None]
         low = f"least {min(values):.4f}" if values else "none"
-        named = ", ".join(f"{row['factor']} {row['level']} {row[f'{phase}.valid']:.3f}" for row in least)
-        found = f"{low}; below: {named or 'none'}"
+        named = [f"{row['factor']} {row['level']} {row[f'{phase}.valid']:.3f}" for row in least]
+        found = f"{low}; below: {_some(named)}"
         checks.append(Check(f"valid share of each level, {phase}", f"≥ {LEAST_VALID:g}", found, not least))
     checks += [_wide(levels, before, phase) for phase in PHASES]
     for phase in PHASES[1:]:
         over = [row for row in levels if (row[f"{phase}.to_bound"] or 0.0) > TIMES_BOUND]
         values = [row[f"{phase}.to_bound"] for row in levels if row[f"{phase}.to_bound"] is not None]
-        named = ", ".join(f"{row['factor']} {row['level']} {row[f'{phase}.to_bound']:.2f}" for row in over)
-        found = f"greatest {max(values):.2f}; above: {named or 'none'}" if values else "none"
+        named = [f"{row['factor']} {row['level']} {row[f'{phase}.to_bound']:.2f}" for row in over]
+        found = f"greatest {max(values):.2f}; above: {_some(named)}" if values else "none"
         met = None if not values else not over
         checks.append(Check(f"RMSE/√PCRB of each level, {phase}", f"≤ {TIMES_BOUND:g}", found, met))
     return checks
@@ -369,7 +376,7 @@ def _wide(levels: Sequence[dict[str, Any]], before: dict[str, Any] | None, phase
             named = f"{row['factor']} {row['level']} {sd:.3f}/{limit:.3f}"
             over.append(named + (" before" if sound else " rmse"))
     wanted = f"≤ {TIMES_BEFORE:g} × before where sound, else ≤ {TIMES_RMSE:g} × RMSE"
-    found = f"greatest share of the limit {most:.2f}; above: {', '.join(over) or 'none'}"
+    found = f"greatest share of the limit {most:.2f}; above: {_some(over)}"
     return Check(f"median claimed sd of each level, {phase}", wanted, found, not over if was else None)
 
 
