@@ -315,3 +315,14 @@ def test_broadcasting_integers_and_shapes():
     assert grid.shape == (2, 3)
     assert airdata.airspeed(total=101_400, static=101_325, temperature=280) == pytest.approx(grid[0, 0], rel=1e-14)
     assert isinstance(airdata.mach(total=np.float64(2.0), static=np.float64(1.5)), float)
+
+
+def test_one_sample_beyond_mach_1_spoils_no_array() -> None:
+    """The limit is p_t/p_s = 1.2^3.5 = 1.8929."""
+    static = 1e5
+    found = airdata.mach(total=np.array([1.1862e5, 1.9e5, 1.8929e5]), static=static)
+    assert np.isnan(found).tolist() == [False, True, False]
+    with pytest.raises(ValueError, match="above 1"):
+        airdata.mach(total=1.9e5, static=static)
+    with pytest.raises(ValueError, match="ressure"):
+        airdata.mach(total=np.array([1.9e5, -1.0]), static=static)

@@ -100,7 +100,7 @@ def test_arrays_of_pressures_equal_floats():
 
 
 def test_the_probe_of_the_simulation_reads_what_the_model_says():
-    """`sensors.probe`, which knows nothing of this package, has the same definition of c_s."""
+    """`sensors.probe`, which knows nothing of this package, has the same definition of c_s, of sines for angles."""
     settings_ = StaticPortSettings(error=-0.04, error_alpha=0.2, error_alpha2=1.5, error_beta2=-0.8, error_mach2=0.1)
     head = PositionError(
         static=Polynomial(((-0.04, 0, 0, 0), (0.2, 0, 1, 0), (1.5, 0, 2, 0), (-0.8, 0, 0, 2), (0.1, 2, 0, 0)))
@@ -108,7 +108,7 @@ def test_the_probe_of_the_simulation_reads_what_the_model_says():
     total = airdata.total_pressure(static=1e5, mach=0.3)
     port = static_port(settings_)
     assert port is not None
-    read = head.read(total=total, static=1e5, alpha=0.05, beta=0.02)[1]
+    read = head.read(total=total, static=1e5, alpha=math.sin(0.05) * math.cos(0.02), beta=math.sin(0.02))[1]
     assert port(total, 1e5, 0.3, 0.05, 0.02, 0.0) == pytest.approx(read, rel=1e-14)
 
 

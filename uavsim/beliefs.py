@@ -38,12 +38,13 @@ class Calibration:
     total, static : float
         The two membranes' sensitivity along body x, Pa/(m/s²).
     ports : tuple of float
-        Its errors of the static port's coefficients c₀, c_α, c_αα and c_ββ, in their standard deviations.
+        Its errors of the static port's coefficients c₀, c_α, c_αα and c_ββ, and of the slipstream, in their standard
+        deviations.
     """
 
     total: float = 0.0
     static: float = 0.0
-    ports: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    ports: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 NO_CALIBRATION = Calibration()
@@ -51,9 +52,9 @@ NO_CALIBRATION = Calibration()
 
 def calibrated(scenario: Scenario, streams: Streams) -> Calibration:
     """What a calibration found: done on the units that fly, with errors of its own."""
-    a, b, c, d = streams("onboard.ports.calibration").standard_normal(4).tolist()
+    a, b, c, d, e = streams("onboard.ports.calibration").standard_normal(5).tolist()
     total, static = _membranes(scenario, streams)
-    return Calibration(total, static, (a, b, c, d))
+    return Calibration(total, static, (a, b, c, d, e))
 
 
 def _membranes(scenario: Scenario, streams: Streams) -> tuple[float, float]:
@@ -123,10 +124,11 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
 
 def _ports(head: HeadKnowledge, belief: MismatchSettings, calibration: Calibration) -> HeadErrors:
     """What is believed of both ports' errors: as the calibration found them."""
-    ports, (error, alpha, alpha2, beta2) = head.ports, calibration.ports
+    ports, (error, alpha, alpha2, beta2, blown) = head.ports, calibration.ports
     known = belief.position
     if head.ports.error == head.ports.error_alpha == head.ports.error_alpha2 == head.ports.error_beta2 == 0.0:
-        error = alpha = alpha2 = beta2 = 0.0  # nothing was found
+        error = alpha = alpha2 = beta2 = blown = 0.0  # nothing was found
+    slipstream = known * (1.0 + blown * ports.slipstream_sd)
     return HeadErrors(
         limit=ports.limit,
         error=known * (ports.error + error * ports.position_sd),
@@ -134,8 +136,8 @@ def _ports(head: HeadKnowledge, belief: MismatchSettings, calibration: Calibrati
         error_alpha2=known * (ports.error_alpha2 + alpha2 * ports.alpha2_sd),
         error_beta2=known * (ports.error_beta2 + beta2 * ports.beta2_sd),
         error_mach2=known * ports.error_mach2,
-        total_slipstream=known * ports.total_slipstream,
-        static_slipstream=known * ports.static_slipstream,
+        total_slipstream=slipstream * ports.total_slipstream,
+        static_slipstream=slipstream * ports.static_slipstream,
         position_sd=belief.position_sd * ports.position_sd,
         alpha_sd=belief.position_sd * ports.alpha_sd,
         alpha2_sd=belief.position_sd * ports.alpha2_sd,

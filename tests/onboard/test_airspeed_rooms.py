@@ -138,7 +138,7 @@ class Watch:
         self.kind, self.flagged, self.paused, self.faulty = kind, [], 0, False
         self.port = self.frozen = self
         self.lost, self.restarted = 0.07, 0
-        self.unsure = self.suspect = self.repeating = self.doubtful = False
+        self.unsure = self.suspect = self.repeating = self.doubtful = self.undecided = False
         for name, value in state.items():
             setattr(self, name, value)
 
@@ -222,10 +222,10 @@ def test_a_jump_is_flagged_where_it_was():
     """Of both at once the static port is: its flag says why the total pressure jumped, too."""
     for which, flags in (((True, False), (1, 0)), ((False, True), (0, 1)), ((True, True), (0, 1))):
         total, static = Watch(), Watch()
-        watched(total, static).jumped(5.0, energy(), *which)
+        watched(total, static).jumped(5.0, energy(), (5.0, 0.0), *which)
         assert (len(total.flagged), len(static.flagged)) == flags
     total, static = Watch(), Watch(faulty=True)
-    watched(total, static).jumped(5.0, energy(), True, True)
+    watched(total, static).jumped(5.0, energy(), (5.0, 0.0), True, True)
     assert (total.flagged, static.flagged) == ([], [])
 
 

@@ -163,7 +163,7 @@ def test_a_cover_left_on_hides_the_wind_for_good(tube):
 
 def test_swapped_tubes_bring_each_pressure_to_the_other_sensor():
     """The airspeed's difference is negative. Each port keeps its own tube and faults."""
-    blocked = StaticPortSettings(faults=(PortFault("blocked", start=0.3),))
+    blocked = ideal_static(faults=(PortFault("blocked", start=0.3),))
     settings = _quiet(swapped_tubes=True, static_port=blocked)
     head = AirDataHead(settings, Streams(1), covered_until=0.1, unit="ideal")
     rows = _tell(head, lambda t: _flow(total=101_925.0 - 100.0 * t, static=101_325.0 - 100.0 * t), 1.0)[5:]

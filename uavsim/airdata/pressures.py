@@ -15,6 +15,7 @@ from uavsim.airdata.constants import EXPONENT, GAMMA, HALF_EXCESS
 from uavsim.airdata.values import (
     Numbers,
     clip,
+    nan_beyond_mach_1,
     nan_up_to_zero,
     numbers,
     require_mach,
@@ -181,13 +182,13 @@ def mach(*, total: Numbers, static: Numbers | float) -> Numbers:
     Returns
     -------
     float or array
-        Mach number.
+        Mach number; in an array NaN where the ratio is beyond that of Mach 1 (+ 1e-6): there a shock stands before the
+        tube and the isentropic relation does not hold.
 
     Raises
     ------
     ValueError
-        Pressure ≤ 0, or a ratio beyond that of Mach 1 (+ 1e-6): there a shock stands before the tube and the
-        isentropic relation does not hold.
+        Pressure ≤ 0; two floats of such a ratio.
 
     Examples
     --------
@@ -195,7 +196,7 @@ def mach(*, total: Numbers, static: Numbers | float) -> Numbers:
     0.5
     """
     xp, (pt, ps) = numbers(total, static)
-    require_subsonic(pt, ps)
+    pt = nan_beyond_mach_1(pt, ps, xp)
     number: Numbers = isentropic_mach(clip(pt - ps) / ps, xp)
     return number
 

@@ -111,6 +111,21 @@ def require_subsonic(total: Any, static: Any) -> None:
         raise ValueError("the ratio of the pressures is that of a Mach number above 1")
 
 
+def nan_beyond_mach_1(total: Any, static: Any, xp: Any) -> Any:
+    """Return the total pressure, in an array NaN where it is that of a Mach number above 1; a float is refused there.
+
+    Raises
+    ------
+    ValueError
+        As `require_subsonic`; of an array for a pressure ≤ 0 alone.
+    """
+    if xp is math:
+        require_subsonic(total, static)
+        return total
+    require_pressure(total, static)
+    return np.where(total > LIMIT_RATIO * static, np.nan, total)
+
+
 def require_speed(speed: Any) -> None:
     """Refuse a negative speed.
 

@@ -99,7 +99,7 @@ class HeadErrors:
         """
         of_down = (self.error_alpha + 2.0 * self.error_alpha2 * down) * down_sd
         bent = 1.4 * self.error_alpha2 * down_sd * down_sd  # a square of a normal number has √2 times its variance
-        blown = self.slipstream_sd * throttle * (abs(self.total_slipstream) + abs(self.static_slipstream))
+        blown = self.slipstream_sd * throttle * (abs(self.total_slipstream) + abs(self.static_slipstream * self.error))
         return hypot(
             self.position_sd, self.alpha_sd * down, self.alpha2_sd * down * down, self.beta2_sd * side2,
             self.error_beta2 * side2_sd, of_down, bent, blown,

@@ -10,6 +10,7 @@ LEVEL = 6.0  # m/s²: 0.6 g. An aircraft with more thrust than that over its dra
 GROWS = 2.0  # m/s² by which the mean may be above the one that is three times as slow. By hand
 MEAN, SLOW = 0.1, 0.3  # s of both means
 HOLD = 0.3  # s. By hand, three of the mean
+LONGEST = 15.0  # s, after which a force is no push, and the ports are watched whatever it is. By hand
 # s from then on. With the 0.7 s at which a catapult's end is seen the watch begins 2 s after its recognition, which is
 # behind the unfolding (1 s) and the pull-up; docs/faults.md holds the check, the healthy flights
 SETTLE = 1.3
@@ -24,14 +25,14 @@ class PushEnd:
         From when on flight is steady, s; inf before that is known.
     """
 
-    __slots__ = ("_mean", "_quiet", "_slow", "steady_from")
+    __slots__ = ("_lasted", "_mean", "_quiet", "_slow", "steady_from")
 
     def __init__(self) -> None:
         self.forget()
 
     def forget(self, steady_from: float = inf) -> None:
         """Begin anew; `steady_from`, s, where it is known."""
-        self._mean = self._slow = 0.0
+        self._mean = self._slow = self._lasted = 0.0
         self._quiet, self.steady_from = inf, steady_from
 
     @property
@@ -43,7 +44,10 @@ class PushEnd:
         """Take the mean of f_x less that at rest, m/s², over a time that ended at `t`, s."""
         self._mean += (force - self._mean) * (dt / MEAN if dt < MEAN else 1.0)
         self._slow += (force - self._slow) * (dt / SLOW if dt < SLOW else 1.0)
-        if self._mean > LEVEL or self._mean > self._slow + GROWS:
+        self._lasted += dt
+        if self._lasted > LONGEST:
+            self.steady_from = t
+        elif self._mean > LEVEL or self._mean > self._slow + GROWS:
             self._quiet = inf
         elif self._quiet == inf:
             self._quiet = t

@@ -22,6 +22,7 @@ FEW = 5  # parts of that row. After the first it may be a beginning, and no othe
 # s: how long a port must agree, how soon after its return a flag doubles that, and the most that it must. By hand;
 # docs/faults.md, column "taken back"
 RETURN, SOON, LONGEST = 1.0, 10.0, 60.0
+BACK = 0.1  # s, the same after silence: ten readings. By hand
 
 
 class Readmission:
@@ -57,9 +58,19 @@ class Readmission:
         self._held = self._held_variance = self._stirred = self._last = 0.0
         self.same = 0
 
-    def flag(self, t: float, held: float = 0.0, held_variance: float = inf) -> None:
-        """Flag the port at `t`, s; `held` is the pressure that is shut in, Pa, and its variance, Pa², if it is shut."""
-        self._wait = min(2.0 * self._wait, LONGEST) if t - self._returned < SOON else RETURN
+    def flag(self, t: float, held: float = 0.0, held_variance: float = inf, mute: bool = False) -> None:
+        """Flag the port.
+
+        Parameters
+        ----------
+        t : float
+            s.
+        held, held_variance : float
+            The pressure that is shut in, Pa, and its variance, Pa², if it is shut.
+        mute : bool
+            Whether nothing came of it: then it is back when readings come that agree.
+        """
+        self._wait = min(2.0 * self._wait, LONGEST) if t - self._returned < SOON else BACK if mute else RETURN
         self.faulty, self._agreed, self._stirred, self._heard = True, inf, 0.0, t
         self._trapped, self._held, self._held_variance = held_variance < inf, held, held_variance
 

@@ -264,7 +264,7 @@ class TotalWatch:
         """
         self.coasts = kind not in MUTE
         if not self.coasts:  # the filter goes on as it is
-            self.port.back.flag(now[0])
+            self.port.back.flag(now[0], mute=True)
             self.faulty, self._astray, self._silent, self.undecided = True, False, False, False
             return
         test = self.port.frozen
@@ -397,7 +397,7 @@ class StaticWatch:
         test = self._test
         self.faulty = True
         if kind != "frozen":
-            self._back.flag(t)
+            self._back.flag(t, mute=kind in MUTE)
             return
         self._back.flag(t, test.held, test.held_variance)
         weight, v = density * GRAVITY, max(energy.v, 1.0)
