@@ -11,18 +11,28 @@ description holds:
 * What a board heats itself by nobody has measured: it counts as a deviation of the thermometer.
 """
 
-from dataclasses import dataclass
-from math import hypot, sqrt
+from dataclasses import dataclass, replace
+from math import exp, hypot, inf, sqrt
 
 from sensors.accelerometer_description import AccelerometerDescription
 from sensors.mounting import attitude, product, transposed
 from sensors.pneumatics import GAMMA, GAS_CONSTANT, STANDARD, laminar_lag
 from sensors.pressure_description import PressureDescription
-from sensors.settings import AccelerometerSettings, AirDataSettings, TubeSettings, Vector, VibrationSettings
+from sensors.settings import (
+    AccelerometerSettings,
+    AirDataSettings,
+    ThermalSettings,
+    TubeSettings,
+    Vector,
+    VibrationSettings,
+)
 from sensors.unit import G0, unit_vector
 
 DENSITY = STANDARD["pressure"] / (GAS_CONSTANT * STANDARD["temperature"])  # kg/m³
 WARMTH_SD = 15.0  # K, of a die about 25 °C beside its own heat: -20 … 70 °C are three of them
+PLACE = 2e4  # Pa, between a place and where a part's accuracy is stated: 70 … 110 kPa are within one of them
+LAPSE, CLIMB = 0.0065, 3.0  # K/m of the standard atmosphere; m/s, of an aircraft that climbs to its cruise
+FLIGHT = 30.0  # s between tare and end for which a ramp of the temperature is covered by a random walk
 COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
 
 
@@ -44,6 +54,17 @@ class AccelerometerKnowledge:
         sensitivity and an error of the mounting bring into the axis, and the size of what `accelerometer.bias` adds.
     lag : float
         Age of a reading at its time stamp, s.
+    side_offset_sd : float
+        As `offset_sd`, of f_y.
+    own_offset_sd, own_side_offset_sd, own_lift_offset_sd : float
+        What the description of the part and its mounting allow of these, without the size of `accelerometer.bias`.
+    white_sd : float
+        Noise of one reading of f_x by the part alone, without vibration, m/s²: a live part has at least that.
+    step : float
+        By which readings are rounded, m/s².
+    range : float
+        Greatest specific force of either sign that a reading can have, m/s²; infinite where readings do not end, or
+        where the case is turned so that no body axis is one of its own.
     """
 
     rate: float
@@ -52,6 +73,13 @@ class AccelerometerKnowledge:
     offset_sd: float
     lift_offset_sd: float
     lag: float
+    side_offset_sd: float
+    own_offset_sd: float
+    own_side_offset_sd: float
+    own_lift_offset_sd: float
+    white_sd: float
+    step: float
+    range: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +100,13 @@ class PressureKnowledge:
         Pressure of the air column in the tube for specific force along body x, Pa/(m/s²).
     membrane_sd : float
         Sensitivity of the membrane to specific force along body x, Pa/(m/s²); 0 where it is not felt.
+    low, high : float
+        Where readings end, Pa; infinite where they do not.
+    step : float
+        By which they are rounded, Pa.
+    offset_sd : float
+        What a reading is off by at rest, Pa: turn-on offset, solder, temperature of the die, scale at a pressure
+        `PLACE` away from that of the stated accuracy, and the size of `offset_pa`.
     """
 
     noise_sd: float
@@ -80,6 +115,10 @@ class PressureKnowledge:
     walk: float
     column: float
     membrane_sd: float
+    low: float
+    high: float
+    step: float
+    offset_sd: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +136,10 @@ class HeadKnowledge:
         Error of the pair's difference per specific force along body x by the air in the tubes, and how far that is
         unknown, Pa/(m/s²).
     walk : float
-        Random walk of the pair's difference, Pa/√s.
+        Random walk of the pair's difference, Pa/√s: that of both parts, and what both dies make of a climb's and of
+        their own warmth (`_warming`).
+    difference_sd : float
+        What the pair's difference may be at rest where no tare has found it, Pa.
     """
 
     rate: float
@@ -107,6 +149,7 @@ class HeadKnowledge:
     column: float
     column_sd: float
     walk: float
+    difference_sd: float
 
 
 def known_of_accelerometer(settings: AccelerometerSettings, vibration: VibrationSettings) -> AccelerometerKnowledge:
@@ -114,7 +157,8 @@ def known_of_accelerometer(settings: AccelerometerSettings, vibration: Vibration
     part, shaking = settings.description(), settings.vibration_scale * vibration.flight_rms_g * G0
     warmer = hypot(WARMTH_SD, settings.thermal.self_heating)
     noise = hypot(*(share * sd for share, sd in zip(attitude(*settings.mounting_deg)[0], part.reading_sd, strict=True)))
-    offset, _, lift_offset = _offsets(settings, part, warmer, shaking)
+    offset, side_offset, lift_offset = _offsets(settings, part, warmer, shaking, _added(settings))
+    own, own_side, own_lift = _offsets(settings, part, warmer, shaking, (0.0, 0.0, 0.0))
     return AccelerometerKnowledge(
         rate=part.rate,
         noise_sd=hypot(noise, shaking * _share(vibration, part.rate)),
@@ -122,6 +166,13 @@ def known_of_accelerometer(settings: AccelerometerSettings, vibration: Vibration
         offset_sd=offset,
         lift_offset_sd=lift_offset,
         lag=settings.delay + part.lag,
+        side_offset_sd=side_offset,
+        own_offset_sd=own,
+        own_side_offset_sd=own_side,
+        own_lift_offset_sd=own_lift,
+        white_sd=noise,
+        step=part.resolution,
+        range=part.range if part.errors.saturation and _in_axes(settings.mounting_deg) else inf,
     )
 
 
@@ -129,9 +180,16 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
     """Return what may be believed of an air-data head."""
     felt = settings.acceleration_sensitivity
     parts = settings.total.description(), settings.static.description()
+    chosen = settings.total, settings.static
+    warmer = hypot(WARMTH_SD, settings.thermal.self_heating)
     total, static = (
-        _known_of_pressure(part, tube, direction, normal if felt else None)
-        for part, (tube, direction), normal in zip(parts, settings.tubes(), settings.normals(), strict=True)
+        replace(
+            _known_of_pressure(part, tube, direction, normal if felt else None),
+            offset_sd=hypot(_at_rest(part, warmer), sensor.offset_pa),
+        )
+        for part, sensor, (tube, direction), normal in zip(
+            parts, chosen, settings.tubes(), settings.normals(), strict=True
+        )
     )
     column = static.column - total.column
     thermometer = parts[1]
@@ -144,7 +202,8 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         ),
         column=column,
         column_sd=COLUMN_SD * abs(column),
-        walk=hypot(total.walk, static.walk),
+        walk=hypot(total.walk, static.walk, *(_warming(part, settings.thermal) for part in parts)),
+        difference_sd=hypot(total.offset_sd, static.offset_sd),
     )
 
 
@@ -160,7 +219,30 @@ def _known_of_pressure(
         walk=part.walk,
         column=DENSITY * tube.length * unit_vector(direction, "direction of a tube")[0],
         membrane_sd=abs(part.acceleration_sd * along),
+        low=part.range[0] if part.errors.saturation else -inf,
+        high=part.range[1] if part.errors.saturation else inf,
+        step=part.resolution,
+        offset_sd=0.0,
     )
+
+
+def _at_rest(part: PressureDescription, warmer: float) -> float:
+    """What a reading is off by at rest, Pa, of a die off 25 °C by so much, K: one standard deviation."""
+    low, high = part.solder
+    solder = hypot((high - low) / 6.0, 0.5 * (low + high))
+    return hypot(part.offset_sd, solder, part.offset_tc_sd * warmer, part.scale_sd * PLACE, part.drift_sd)
+
+
+def _warming(part: PressureDescription, thermal: ThermalSettings) -> float:
+    """What a die's change of temperature makes of its offset, as a random walk, Pa/√s.
+
+    The temperature coefficient times a rate of r K/s is a ramp, r t after the time t. A random walk of r √T is at least
+    as wide until T. The rates are that of a climb through the standard atmosphere, and that at which the die still
+    warms itself after it has been switched on.
+    """
+    own = thermal.self_heating / thermal.lag * exp(-thermal.powered_for / thermal.lag)
+    until = min(thermal.lag, FLIGHT)
+    return part.offset_tc_sd * hypot(LAPSE * CLIMB * sqrt(FLIGHT), own * sqrt(until))
 
 
 def _lag(part: PressureDescription, tube: TubeSettings) -> float:
@@ -177,12 +259,21 @@ def _share(vibration: VibrationSettings, rate: float) -> float:
     return sqrt(0.5 * rate / (high - low))
 
 
+def _in_axes(mounting_deg: Vector) -> bool:
+    """Whether each axis of the case is one of the body's, of either sign."""
+    return all(abs(angle / 90.0 - round(angle / 90.0)) < 1e-9 for angle in mounting_deg)
+
+
+def _added(settings: AccelerometerSettings) -> Vector:
+    """Size of the offset beside that of the unit, m/s², in the case."""
+    return settings.bias if isinstance(settings.bias, tuple) else (settings.bias,) * 3
+
+
 def _offsets(
-    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float
+    settings: AccelerometerSettings, part: AccelerometerDescription, warmer: float, shaking: float, added: Vector
 ) -> tuple[float, ...]:
     """Standard deviations of the offsets along the body's axes at 1 g, m/s², of a die off 25 °C by so much, K."""
     mounting = attitude(*settings.mounting_deg)
-    added = settings.bias if isinstance(settings.bias, tuple) else (settings.bias,) * 3
     in_case = [
         hypot(part.offset_sd(i, warmer=warmer, shaking=shaking, down=down), added[i])
         for i, down in enumerate(mounting[2])  # the body's z axis in the case: along it there is 1 g

@@ -75,6 +75,8 @@ HELD = (
     "flight_computer.motor_delay=0.2", "flight_computer.stroke_end_level_g=1.3",
     "flight_computer.stroke_end_mean=0.014",
     "flight_computer.stroke_end_hold=0.026", "flight_computer.safe_throttle=0.62", "flight_computer.loss_time=0.16",
+    "flight_computer.rail_elevation_deg=16.6", "flight_computer.rail_elevation_sd_deg=0.8",
+    "flight_computer.rail_roll_deg=0.4",
 )  # fmt: skip
 BELIEVED = (
     "mismatch.total_noise=1.2", "mismatch.static_noise=0.9", "mismatch.drift=1.5", "mismatch.lag=0.8",

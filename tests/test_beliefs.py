@@ -45,7 +45,8 @@ def test_vibration_and_drift_are_noise_of_their_density() -> None:
     noise = believed_noise(scenario())
     vibration = 0.05 * 9.80665 * math.sqrt(0.5 * 833.0 / 195.0)
     assert noise.accelerometer_sd == pytest.approx(math.hypot(vibration, 0.04403), rel=1e-3)
-    assert noise.walk == pytest.approx(math.sqrt(2.0 * (0.0072 + 2.5e-5)), rel=1e-6)
+    climbing = (0.62 * 0.0065 * 3.0) ** 2 * 30.0  # Pa²/s: a die in a climb of 3 m/s, as a random walk over 30 s
+    assert noise.walk == pytest.approx(math.sqrt(2.0 * (0.0072 + 2.5e-5 + climbing)), rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +65,9 @@ def test_each_mismatch_is_a_factor_on_its_own_belief(key: str, field: str) -> No
     changed = {name for name in plain.__slots__ if getattr(doubted, name) != getattr(plain, name)}
     together = {
         "lag": {"total_window", "static_window", "total_lag", "static_lag"},
-        "accelerometer_offset": {"accelerometer_offset_sd", "lift_offset_sd"},
+        "accelerometer_offset": {"accelerometer_offset_sd", "lift_offset_sd", "side_offset_sd"}
+        | {f"own_{axis}offset_sd" for axis in ("", "side_", "lift_")},
+        "drift": {"walk", "difference_sd"},
     }
     assert changed == together.get(key, {field})
 
@@ -73,7 +76,7 @@ KNOWN = [("known_of_accelerometer", f"{field.name}") for field in fields(Acceler
     ("known_of_head", f"{path}{field.name}")
     for path, kind in (("", HeadKnowledge), ("total.", PressureKnowledge), ("static.", PressureKnowledge))
     for field in fields(kind)
-    if not path or field.name not in ("walk", "column")  # of the pair's difference, which the head has
+    if not path or field.name not in ("walk", "column", "offset_sd")  # of the pair's difference, which the head has
     if field.name not in ("total", "static")
 ]
 

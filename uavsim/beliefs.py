@@ -71,7 +71,30 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
         accelerometer_rate=accelerometer.rate,
         accelerometer_lag=belief.accelerometer_lag * accelerometer.lag,
         head_rate=head.rate,
+        total_range=(total.low, total.high),
+        static_range=(static.low, static.high),
+        total_step=total.step,
+        static_step=static.step,
+        accelerometer_range=(-accelerometer.range, accelerometer.range - accelerometer.step),
+        accelerometer_step=accelerometer.step,
+        accelerometer_white_sd=accelerometer.white_sd,
+        side_offset_sd=belief.accelerometer_offset * accelerometer.side_offset_sd,
+        own_offset_sd=belief.accelerometer_offset * accelerometer.own_offset_sd,
+        own_side_offset_sd=belief.accelerometer_offset * accelerometer.own_side_offset_sd,
+        own_lift_offset_sd=belief.accelerometer_offset * accelerometer.own_lift_offset_sd,
+        rail_elevation=_elevation(scenario),
+        rail_elevation_sd=radians(scenario.flight_computer.rail_elevation_sd_deg),
+        rail_roll=radians(scenario.flight_computer.rail_roll_deg),
+        difference_sd=belief.drift * head.difference_sd,
     )
+
+
+def _elevation(scenario: Scenario) -> float | None:
+    """Elevation of the rail as the crew believes it, rad; of a rig nothing is believed that is not said."""
+    told = scenario.flight_computer.rail_elevation_deg
+    if told is None and scenario.plant.chosen.flies:
+        told = scenario.launcher.elevation_deg
+    return None if told is None else radians(told)
 
 
 def believed_air(scenario: Scenario) -> EstimatorSettings:

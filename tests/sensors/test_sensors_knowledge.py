@@ -26,7 +26,7 @@ from sensors import (
     known_of_accelerometer,
     known_of_head,
 )
-from sensors.settings import StaticPortSettings, TotalPortSettings, TubeSettings
+from sensors.settings import StaticPortSettings, ThermalSettings, TotalPortSettings, TubeSettings
 from sensors.unit import G0
 
 WARMTH = 15.0  # K, of a die about 25 °C
@@ -146,6 +146,7 @@ ACCELEROMETER: dict[str, Named] = {
     "errors.random_walk": (100.0, *more(OFFSET, drawn(PART, "random_walk", 100.0) * 60.0)),
     "errors.bandwidth": (False, *is_(LAG, 0.0)),
     "errors.quantisation": (False, *more(NOISE, -(STEP**2) / 12.0)),
+    "errors.saturation": (False, *is_("accelerometer.range", math.inf)),
     "mounting_deg": ((0.0, 90.0, 0.0), *more(OFFSET, Z_OVER_X)),  # nose up: body x is the axis z of the case
     "mounting_error_deg": ((0.0, 5.0, 0.0), *more(OFFSET, (G0 * math.sin(math.radians(5.0))) ** 2)),
     "delay": (0.01, LAG, lambda before: before[LAG] + 0.01),
@@ -157,9 +158,15 @@ VIBRATION: dict[str, Named] = {
 }
 
 
+CLIMBING = (BAROMETER.offset_tc_sd * 0.0065 * 3.0) ** 2 * 30.0  # Pa²/s, of a climb of 3 m/s, until 30 s
+WARMING = BAROMETER.offset_tc_sd * 20.0 / 30.0 * math.sqrt(30.0)  # Pa/√s, of 20 K that are to come with 30 s
+
+
 def of_pressure(name: str) -> dict[str, Named]:
     """One of the two sensors."""
-    noise, walk, lag, membrane = (f"head.{name}.{key}" for key in ("noise_sd", "walk", "lag", "membrane_sd"))
+    noise, walk, lag, membrane, at_rest = (
+        f"head.{name}.{key}" for key in ("noise_sd", "walk", "lag", "membrane_sd", "offset_sd")
+    )
     return {
         f"{name}.preset": ("bmp280", *is_(noise, 3.3)),
         f"{name}.mode": ("x16/x2", *is_(f"head.{name}.window", 37.14e-3)),
@@ -170,6 +177,12 @@ def of_pressure(name: str) -> dict[str, Named]:
         f"{name}.errors.drift": (3.0, *is_(walk, math.sqrt(9.0 * 2.0 * 0.6**2 / 100.0 + 0.005**2))),
         f"{name}.errors.random_walk": (3.0, *is_(walk, math.sqrt(2.0 * 0.6**2 / 100.0 + 9.0 * 0.005**2))),
         f"{name}.normal": ((0.6, 0.0, 0.8), *is_(membrane, 0.6 * 0.2)),
+        f"{name}.offset_pa": (300.0, *more(at_rest, 300.0**2)),
+        f"{name}.errors.offset": (3.0, *more(at_rest, 8.0 * BAROMETER.offset_sd**2)),
+        f"{name}.errors.solder": (3.0, *more(at_rest, 8.0 * (80.0 / 3.0) ** 2)),
+        f"{name}.errors.scale": (3.0, *more(at_rest, 8.0 * (BAROMETER.scale_sd * 2e4) ** 2)),
+        f"{name}.errors.temperature": (3.0, *more("head.walk", 8.0 * CLIMBING)),
+        f"{name}.errors.saturation": (False, *is_(f"head.{name}.high", math.inf)),
         f"{name}_port.tube.length": (0.6, *times(f"head.{name}.column", 2.0)),
         f"{name}_port.tube.diameter": (1e-3, *is_(lag, 16.0 * lag_of_tube(5e-8, 0.25))),
         f"{name}_port.tube.volume": (5e-7, *is_(lag, lag_of_tube(5e-7))),
@@ -184,6 +197,8 @@ AIR: dict[str, Named] = {
     "pipe": (0.05, *times("head.total.column", 0.05 / 0.3)),
     "acceleration_sensitivity": (False, *is_("head.static.membrane_sd", 0.0)),
     "thermal.self_heating": (5.0, *more("head.temperature_sd", 25.0)),
+    "thermal.powered_for": (0.0, *more("head.walk", 2.0 * WARMING**2 * (1.0 - math.exp(-40.0)))),
+    "thermal.lag": (10.0, *more("head.walk", 2.0 * WARMING**2 * (3.0 * math.exp(-4.0) - math.exp(-4.0 / 3.0)))),
     "rate": (50.0, *is_("head.rate", 50.0)),
 }
 NAMED = {
@@ -192,6 +207,8 @@ NAMED = {
     for key, named in table.items()
 }
 SHOWS_WITH: dict[str, tuple[str, Any]] = {
+    "air_data.thermal.powered_for": ("air_data.thermal.self_heating", 20.0),
+    "air_data.thermal.lag": ("air_data.thermal", ThermalSettings(self_heating=20.0, powered_for=20.0)),
     "accelerometer.preset": ("accelerometer.filter", None),
     **{f"air_data.{n}.errors.quantisation": (f"air_data.{n}.noise_scale", 0.0) for n in ("total", "static")},
 }
@@ -202,12 +219,10 @@ SHOWS_WITH: dict[str, tuple[str, Any]] = {
 UNIT = "which unit flies is what the knowledge leaves out"
 BREAKS = "what breaks is found in flight, not believed beforehand"
 CLOCK = "readings carry their own time stamps"
-TARED = "the tare takes it out; without one nothing of it is believed yet"
 NOT_YET = {
     "accelerometer.unit": UNIT,
     "accelerometer.errors.clock": CLOCK,
     "accelerometer.errors.drift_model": "one deviation stands for either way to wander",
-    "accelerometer.errors.saturation": "a reading at the range's end is still taken for a measurement",
     "accelerometer.position": "the lever arm's share of the force is not known on board",
     "air_data.position": "how the head moves beside the centre of gravity is not known on board",
     "accelerometer.rate_error_percent": CLOCK,
@@ -229,21 +244,13 @@ NOT_YET = {
     "air_data.cover_off": "when the tare is taken the estimator is told",
     "air_data.total_port.probe": "the angle's effect is not believed yet",
     "air_data.static_port.error": "the position error is not believed yet",
-    "air_data.thermal.lag": "the board's own heat counts as settled",
-    "air_data.thermal.powered_for": "the board's own heat counts as settled",
     **{
         f"air_data.{name}{key}": reason
         for name in ("total", "static")
         for key, reason in {
             ".unit": UNIT,
-            ".offset_pa": TARED,
-            ".errors.offset": TARED,
-            ".errors.solder": TARED,
-            ".errors.scale": "at launch the tare takes it out; in a climb it counts as walk of the difference",
-            ".errors.temperature": "the tare takes it out, but for what the die warms in flight",
             ".errors.clock": CLOCK,
             ".errors.drift_model": "one deviation stands for either way to wander",
-            ".errors.saturation": "a reading at the range's end is still taken for a measurement",
             ".rate_error_percent": CLOCK,
             ".faults": BREAKS,
             "_port.slipstream": "the propeller's share of the pressure is not believed yet",
@@ -349,6 +356,11 @@ OF_BAROMETER = {
     "drift_sd": (1.8, *is_("head.static.walk", math.sqrt(9.0 * 2.0 * 0.6**2 / 100.0 + 0.005**2))),
     "correlation_time": (25.0, *is_("head.static.walk", math.sqrt(2.0 * 0.6**2 / 25.0 + 0.005**2))),
     "random_walk": (0.1, *is_("head.static.walk", math.sqrt(2.0 * 0.6**2 / 100.0 + 0.1**2))),
+    "range": ((2e4, 1.1e5), *is_("head.static.low", 2e4)),
+    "offset_sd": (100.0, *more("head.static.offset_sd", 100.0**2 - BAROMETER.offset_sd**2)),
+    "offset_tc_sd": (1.0, *more("head.static.offset_sd", (1.0 - BAROMETER.offset_tc_sd**2) * WARMTH**2)),
+    "solder": ((-60.0, 240.0), *more("head.static.offset_sd", 50.0**2 + 90.0**2 - (80.0 / 3.0) ** 2)),
+    "scale_sd": (1e-3, *more("head.static.offset_sd", (1e-6 - BAROMETER.scale_sd**2) * 2e4**2)),
     "temperature_offset_sd": (2.0, *more("head.temperature_sd", 4.0 - BAROMETER.temperature_offset_sd**2)),
     "temperature_resolution": (1.0, *more("head.temperature_sd", 1.0 / 12.0 - 0.005**2)),
     "noise_scale": (3.0, *times("head.static.noise_sd", 3.0)),
@@ -363,8 +375,7 @@ OF_MODE = {
 BAROMETER_NOT_YET = {
     **dict.fromkeys(("name", "document", "modes", "iir"), SETTING),
     **dict.fromkeys((f.name for f in fields(PressureDescription) if f.name.endswith("_limit")), LIMIT),
-    "range": "a reading at the range's end is still taken for a measurement",
-    **dict.fromkeys(("reference_pressure", "offset_sd", "offset_tc_sd", "solder", "scale_sd"), TARED),
+    "reference_pressure": "the scale error counts at a pressure that is usual",
     "rate_sd": CLOCK,
     "errors": "the factors are in the numbers already",
 }

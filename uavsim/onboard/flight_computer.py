@@ -94,6 +94,12 @@ class FlightComputerSettings:
         Throttle in level flight while no airspeed is known, 0 ... 1.
     loss_time
         How long an estimate must have been invalid to be given up, and valid to be flown on again, s.
+    rail_elevation_deg
+        Elevation of the rail as the crew believes it, degrees; None: that of the launcher.
+    rail_elevation_sd_deg
+        Standard deviation of that, and of the roll, degrees.
+    rail_roll_deg
+        Roll of the aircraft on the rail as the crew believes it, degrees.
     """
 
     airspeed: Annotated[float, Interval(ge=10, le=100)] = 32.0
@@ -116,6 +122,9 @@ class FlightComputerSettings:
     throttle_climb: Annotated[float, Interval(ge=0, le=10)] = 2.5
     safe_throttle: Annotated[float, Interval(ge=0, le=1)] = 0.7
     loss_time: Annotated[float, Interval(ge=0, le=10)] = 0.1
+    rail_elevation_deg: Annotated[float, Interval(ge=-90, le=90)] | None = None
+    rail_elevation_sd_deg: Annotated[float, Interval(ge=0.01, le=45)] = 0.5
+    rail_roll_deg: Annotated[float, Interval(ge=-180, le=180)] = 0.0
 
 
 class FlightComputer:

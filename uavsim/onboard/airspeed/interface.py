@@ -6,9 +6,14 @@ one, and no estimate outside them is valid; which readings are left out for thei
 """
 
 from dataclasses import dataclass
+from math import inf
 from typing import Annotated
 
 from annotated_types import Ge, Interval
+
+from uavsim.onboard.plausible import LEAST_TEMPERATURE, MOST_TEMPERATURE
+
+ANY = (-inf, inf)  # a range without ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +54,32 @@ class NoiseModel:
         Age of a reading of specific force at its time stamp, s.
     head_rate : float
         Readings of the head a second, Hz: which of their time stamps are believed.
+    total_range, static_range : tuple of float
+        Pa: a pressure at or beyond an end is no measurement.
+    total_step, static_step : float
+        By which they are rounded, Pa.
+    temperature_range : tuple of float
+        K: a temperature beyond it is no measurement.
+    accelerometer_range : tuple of float
+        m/s²: a specific force at or beyond an end has been clipped.
+    accelerometer_step : float
+        By which it is rounded, m/s².
+    accelerometer_white_sd : float
+        White noise of one reading of f_x by the part alone, without vibration, m/s²: a live part has at least that.
+    side_offset_sd : float
+        Offset of f_y, m/s².
+    own_offset_sd, own_side_offset_sd, own_lift_offset_sd : float
+        Offsets that the part's description allows, m/s²; one that is four times as large is told.
+    rail_elevation : float or None
+        Of the rail as the crew believes it, rad; None: not known, or there is no rail.
+    rail_elevation_sd : float
+        How well it is known, rad; so is the roll.
+    rail_roll : float
+        Roll of the aircraft on it, rad.
+    difference_sd : float
+        What the pair's difference may be at rest where no tare has found it, Pa.
+    differential : bool
+        Whether the total pressure is the sum of the static one and of a difference that one sensor reads.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
@@ -70,3 +101,20 @@ class NoiseModel:
     accelerometer_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 1000.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     head_rate: Annotated[float, Interval(gt=0.0, le=100_000.0)] = 100.0
+    total_range: tuple[float, float] = ANY
+    static_range: tuple[float, float] = ANY
+    total_step: Annotated[float, Ge(0.0)] = 0.0
+    static_step: Annotated[float, Ge(0.0)] = 0.0
+    temperature_range: tuple[float, float] = (LEAST_TEMPERATURE, MOST_TEMPERATURE)
+    accelerometer_range: tuple[float, float] = ANY
+    accelerometer_step: Annotated[float, Ge(0.0)] = 0.0
+    accelerometer_white_sd: Annotated[float, Ge(0.0)] = 0.0
+    side_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    own_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    own_side_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    own_lift_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    rail_elevation: Annotated[float, Interval(ge=-1.6, le=1.6)] | None = None
+    rail_elevation_sd: Annotated[float, Interval(ge=0.0, le=1.6)] = 0.0087
+    rail_roll: Annotated[float, Interval(ge=-3.2, le=3.2)] = 0.0
+    difference_sd: Annotated[float, Ge(0.0)] = 0.0
+    differential: bool = False
