@@ -1,9 +1,9 @@
 """What a device writes on a bench: at rest, z down, 101 325 Pa, 25 °C.
 
-Between the two open ports of a differential sensor there is no difference, and it reads 0.
 At rest an accelerometer feels the push of the bench, upwards: with z down its specific force is (0, 0, -g0), so the
 z axis reads -9.80665 m/s². A pressure sensor on a bench is not soldered to a board yet and its membrane feels no
-acceleration worth the name. The readings are, bit for bit, those of the device that flies.
+acceleration worth the name. Both ports of a differential one are open. The readings are, bit for bit, those of the
+device that flies.
 """
 
 from collections.abc import Iterator
@@ -167,7 +167,7 @@ def _endless(description: Description, streams: Streams, unit: Unit) -> Iterator
         yield from Accelerometer(description, streams, unit=unit).at_rest((0.0, 0.0, -G0))
     else:
         sensor = PressureSensor(description, streams, unit=unit)
-        at = 0.0 if isinstance(description, DifferentialDescription) else PRESSURE  # both of its ports are open
+        at = 0.0 if isinstance(description, DifferentialDescription) else PRESSURE
         for end, pressure, temperature in sensor.at_rest(at, REFERENCE_TEMPERATURE):
             yield np.column_stack((end, pressure, temperature))
 

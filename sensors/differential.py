@@ -48,9 +48,11 @@ class Response:
     ----------
     hose : float
         Σ L/d⁴ of the tubes, 1/m³; 0 where nothing flows.
+    passes : bool
+        Whether air passes from one side to the other.
     """
 
-    __slots__ = ("_calibration", "_flow", "_knee", "_sign", "hose")
+    __slots__ = ("_calibration", "_flow", "_knee", "_sign", "hose", "passes")
 
     def __init__(
         self, description: DifferentialDescription, tubes: Iterable[TubeSettings] = (), *, reversed: bool = False
@@ -59,7 +61,8 @@ class Response:
         self._calibration, self._flow, self._knee = (
             description.calibration_pressure, description.flow, description.flow_pressure,
         )  # fmt: skip
-        self.hose = hose(tubes) if self._flow > 0.0 else 0.0
+        self.passes = self._flow > 0.0
+        self.hose = hose(tubes) if self.passes else 0.0
 
     def __call__(self, difference: float, pressure: float, temperature: float) -> float:
         """Return what is read, Pa.

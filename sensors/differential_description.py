@@ -47,13 +47,10 @@ class DifferentialDescription(PressureDescription):
     flow: float = term("flow_kg", FLOW_KG, default=0.0)
     flow_pressure: float = term("flow_pressure_pa", FLOW_PA, default=inf)
 
-    @property
-    def thermal(self) -> bool:
-        """Whether air flows through the part."""
-        return self.calibration_pressure > 0.0 or self.flow > 0.0
 
-
-def fastest(description: DifferentialDescription, pressure: float = SEA_LEVEL_PRESSURE, sound: float = SEA_LEVEL_SOUND) -> float:
+def fastest(
+    description: DifferentialDescription, pressure: float = SEA_LEVEL_PRESSURE, sound: float = SEA_LEVEL_SOUND
+) -> float:
     """Return the airspeed at which the readings of a part end, m/s, by the isentropic relation without tubes.
 
     Parameters
@@ -66,7 +63,7 @@ def fastest(description: DifferentialDescription, pressure: float = SEA_LEVEL_PR
     --------
     >>> from sensors import preset
     >>> round(fastest(preset("ms4525do")), 1)
-    104.8
+    104.9
     """
     difference = description.range[1]
     if description.calibration_pressure > 0.0:

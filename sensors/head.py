@@ -5,6 +5,11 @@
     p_s ──╂─┬─ position error ── line ── + n·f ───── static ─ conversion ──┴── (t, p_total, p_static, T, t_total,
             └─ bay                                   thermometer                t_static)
 
+A head of kind "differential" has a differential sensor between the two lines in the place of the total sensor; what it
+makes of p_t − p_s is in `sensors.differential`. Its row has the same columns: p_total is the static reading plus that of
+the difference, and t_total the end of the difference's conversion. So whoever takes two pressures can take it, and
+p_total − p_static is the difference as it was read.
+
 The sensors run freely, so the two values of a row are of different instants and as old as their clocks make them:
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
 cover both ports feel the static pressure, wind or not.
@@ -23,10 +28,18 @@ part, and a pressure that is no number spoils the windows it is in and no others
 from math import inf, nan
 
 from sensors.clock import Clock
+from sensors.differential import Response, passing
 from sensors.pneumatics import Line
 from sensors.pressure import PressureSensor
 from sensors.probe import static_port, total_port
-from sensors.settings import AirDataSettings, PortFault, PressureSettings, ThermalSettings, TubeSettings
+from sensors.settings import (
+    AirDataSettings,
+    DifferentialSettings,
+    PortFault,
+    PressureSettings,
+    ThermalSettings,
+    TubeSettings,
+)
 from sensors.streams import Streams
 from sensors.surroundings import Air, Flow, Surroundings
 from sensors.unit import Triple, Unit
@@ -45,7 +58,7 @@ class AirDataHead:
     ----------
     settings : AirDataSettings
     streams : Streams
-        Streams "{name}.total. …", "{name}.static. …" and "{name}.poll" are used.
+        Streams "{name}.total. …" or "{name}.differential. …", "{name}.static. …" and "{name}.poll" are used.
     surroundings : Surroundings, optional
         The air; without it there is no number to read.
     dt : float
@@ -64,6 +77,7 @@ class AirDataHead:
     due : float
         Time of the next poll, s.
     total, static : PressureSensor
+        The first is the differential one where the head is of that kind.
     covered_until : float
     surroundings : Surroundings or None
         Both may be set during a flight.
@@ -75,8 +89,8 @@ class AirDataHead:
     """
 
     __slots__ = (
-        "_dt", "_lines", "_membranes", "_next_poll", "_open", "_settings", "_static_error", "_static_felt",
-        "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt", "_total_truth",
+        "_dt", "_lines", "_membranes", "_next_poll", "_open", "_response", "_settings", "_static_error",
+        "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt", "_total_truth",
         "covered_until", "due", "full", "static", "surroundings", "total",
     )  # fmt: skip
 
@@ -93,8 +107,14 @@ class AirDataHead:
     ) -> None:
         self._settings = settings
         forward, down = settings.normals()
-        self.total = _sensor(settings.total, forward, settings.thermal, streams, unit, f"{name}.total")
-        self.static = _sensor(settings.static, down, settings.thermal, streams, unit, f"{name}.static")
+        first, second = settings.sensors()
+        self._response: Response | None = None
+        if isinstance(first, DifferentialSettings):
+            both = (tube for tube, _ in settings.tubes())
+            self._response = Response(first.description(), both, reversed=first.polarity == "reversed")
+        channel = "total" if self._response is None else "differential"
+        self.total = _sensor(first, forward, settings.thermal, streams, unit, f"{name}.{channel}")
+        self.static = _sensor(second, down, settings.thermal, streams, unit, f"{name}.static")
         self.covered_until = covered_until
         poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
         self.due, self._next_poll = poll.due, poll.later
@@ -110,7 +130,8 @@ class AirDataHead:
         felt = settings.acceleration_sensitivity
         self._membranes = (*self.total.acceleration, *self.static.acceleration) if felt else (0.0,) * 6
         self.full = not self._open or any(self._membranes)
-        self._total_truth = self._mean_of_total if self.full else self._total_port
+        port = self._total_port if self._response is None else self._difference
+        self._total_truth = self._mean_of_total if self.full else port
         self._static_truth = self._mean_of_static if self.full else self._static_port
         self._lines = None
 
@@ -132,6 +153,8 @@ class AirDataHead:
         fx, fy, fz = force
         if not self._open or t < self.covered_until:
             total, static = self._behind(t, flow, force)
+        if self._response is not None:
+            total = self._response(total - static, static, self._temperature)
         tx, ty, tz, sx, sy, sz = self._membranes
         felt = self._total_felt
         felt.append(total + tx * fx + ty * fy + tz * fz)
@@ -159,6 +182,8 @@ class AirDataHead:
         while t <= until:
             p_total, _, t_total = self.total.read(t, self._total_truth)
             p_static, temperature, t_static = self.static.read(t, self._static_truth)
+            if self._response is not None:
+                p_total += p_static
             rows.append((t, p_total, p_static, temperature, t_total, t_static))
             t = self.due = self._next_poll()
         return rows
@@ -168,6 +193,12 @@ class AirDataHead:
     def _total_port(self, t: float) -> tuple[float, float]:
         p_total, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
         return (p_static if t < self.covered_until else p_total), temperature
+
+    def _difference(self, t: float) -> tuple[float, float]:
+        p_total, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
+        assert self._response is not None
+        difference = 0.0 * p_static if t < self.covered_until else p_total - p_static
+        return self._response(difference, p_static, temperature), temperature
 
     def _static_port(self, t: float) -> tuple[float, float]:
         _, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
@@ -216,7 +247,8 @@ class AirDataHead:
         if total_line is not None:
             total = total_line.step(t, total, p_static, temperature, force)
         if static_line is not None:
-            static = static_line.step(t, static, p_static, temperature, force)
+            bay = p_static if self._response is None or not self._response.passes else total
+            static = static_line.step(t, static, bay, temperature, force)
         return total, static
 
     def _connect(self, pressure: float, temperature: float) -> tuple[Line | None, Line | None]:
@@ -228,11 +260,16 @@ class AirDataHead:
             return Line(tube, direction, faults, self._dt, pressure=pressure, temperature=temperature)
 
         total, static = s.tubes()
-        return line(*total, s.total_port.faults), line(*static, s.static_port.faults)
+        of_total, of_static = s.total_port.faults, s.static_port.faults
+        if self._response is not None and self._response.passes:
+            of_total, of_static = passing(of_total), passing(of_static)
+        return line(*total, of_total), line(*static, of_static)
 
 
 def _sensor(
-    settings: PressureSettings, normal: Triple, thermal: ThermalSettings, streams: Streams, unit: Unit | None, name: str
+    settings: PressureSettings | DifferentialSettings,
+    normal: Triple,
+    thermal: ThermalSettings, streams: Streams, unit: Unit | None, name: str
 ) -> PressureSensor:
     return PressureSensor(
         settings.description(),

@@ -23,12 +23,13 @@ from weakref import proxy
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__
-from uavsim.beliefs import believed_air, believed_noise, calibrated
+from uavsim.beliefs import believed_air, believed_flow, believed_noise, calibrated
 from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
+from uavsim.onboard.flow_through import FlowThrough
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
 from uavsim.plants.air.weather import moves
@@ -135,6 +136,8 @@ class Onboard:
             scenario.launch_axis,
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
+        flow = believed_flow(scenario)
+        self._flow = None if flow is None else FlowThrough(flow)
         self.estimates: list[Estimate] = []
 
     def _aligned(self, mounting_deg: tuple[float, float, float]) -> Callable[[float, float, float, float], None]:
@@ -150,6 +153,8 @@ class Onboard:
 
     def air_data(self, reading: AirReading) -> None:
         """Take one reading of the head."""
+        if self._flow is not None:
+            reading = self._flow.row(reading)
         estimate = self.computer.air_data(*reading)
         if estimate is not None:
             self.estimates.append(estimate)

@@ -31,6 +31,7 @@ def set_faults(scenario: "Scenario") -> list[SetFault]:
         "total port": air.total_port.faults,
         "static port": air.static_port.faults,
         "total sensor": air.total.faults,
+        "differential sensor": air.differential.faults,
         "static sensor": air.static.faults,
         "accelerometer": scenario.accelerometer.faults,
     }

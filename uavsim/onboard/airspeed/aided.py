@@ -15,6 +15,11 @@ is of another instant, some milliseconds away. In those it moves by ρ V s Δt; 
 So it is compared across the difference. The integral of the specific force is kept in `speed_gained`, so that a reading
 of the accelerometer costs one sum.
 
+**A differential sensor.** Its channel is Δp (`difference`), and the filter's total pressure is read relative to the
+static one (`energy_model`). Where it reads Δp (1 + κ) all that it can say is V' = V (1 + κ/2), and V̇' is that by as
+much. So the filter's airspeed is V', for which f_x has a scale error of κ/2 more, and σ_κ V/2 goes into what is told.
+What the force would say of κ itself in the stroke, a third of its variance at the best, is not used.
+
 **Push.** The specific force bends the membranes of the pressure sensors. The known part of that error is taken off.
 What is not known of its coefficient is the state k until the flight is steady. The scale error of the accelerometer is
 a bias that comes and goes with the push: when the mean force f changes, b gains the variance σ² |Δ(f²)|, σ being the
@@ -33,6 +38,7 @@ from math import inf, nan, sqrt
 
 from uavsim import airdata
 from uavsim.onboard.airspeed.air import SLOWEST, Air
+from uavsim.onboard.airspeed.difference import Difference
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.interface import NoiseModel
@@ -135,11 +141,11 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
-        "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_variance", "_settings", "_stamps",
+        "_air", "_apart", "_difference", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
+        "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_share", "_scale_variance", "_settings", "_stamps",
         "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps", "_sudden", "_t",
         "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance",
-        "_u", "_unfolding", "_w", "_waiting", "energy", "flying", "news", "ports", "time",
+        "_u", "_unfolding", "_w", "_waiting", "_zero", "energy", "flying", "news", "ports", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -158,7 +164,9 @@ class AidedFilter(Estimator):
         self._static_age = 0.5 * noise.static_window + noise.static_lag
         self._total_variance = max(noise.total_sd, MODEL) ** 2
         self._static_variance = max(noise.static_sd, MODEL) ** 2
-        self._scale_variance = noise.accelerometer_scale_sd**2
+        self._difference = Difference(noise.differential)
+        self._scale_share = 0.5 * noise.difference_scale_sd
+        self._scale_variance = noise.accelerometer_scale_sd**2 + self._scale_share**2
         self._temperature_share = 0.5 * noise.temperature_sd
         self._on_rail = aided.on_rail
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
@@ -169,7 +177,8 @@ class AidedFilter(Estimator):
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
-        self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
+        each = self._total_variance + (0.0 if noise.differential else self._static_variance)
+        self._onset = Onset(each, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
         self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
@@ -293,6 +302,7 @@ class AidedFilter(Estimator):
         static = self._waiting.static.value
         known = LEAST_PRESSURE <= static <= MOST_PRESSURE
         self._tare, tare_variance = self._waiting.tare()
+        self._zero = self._tare + self._difference.zero
         self._air.begin(self._waiting.temperature)
         self._unfolding.forget()
         rest = self._rest.result(start)
@@ -342,6 +352,7 @@ class AidedFilter(Estimator):
             difference_sd=difference_sd,
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
+            relative=noise.differential,
         )
 
     def _start(self, start: float, patience: float, steady_from: float) -> None:
@@ -377,12 +388,13 @@ class AidedFilter(Estimator):
             temperature = nan
         air.at(energy.p, energy.s)
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
-        total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
+        channel = self._difference.read(p_total, p_static)
+        total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
             ports.jumped(t, energy, total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
-        nis_total, nis_static = self._take(p_total, p_static, end_total, end_static, new_total > 0, new_static > 0)
+        nis_total, nis_static = self._take(channel, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
         if total and static and temperature > 0.0:
             excess = (p_total - self._tare - p_static) / p_static
@@ -392,7 +404,7 @@ class AidedFilter(Estimator):
     def _take(
         self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
     ) -> tuple[float, float]:
-        """Take what is new of a reading of the head; return the normalised innovations squared."""
+        """Take what is new of a reading of the head, the channels; return the normalised innovations squared."""
         nis_total = nis_static = nan
         to, at = t_total - self._total_age, t_static - self._static_age
         if new_total and new_static and self._steady(to, at):
@@ -426,7 +438,7 @@ class AidedFilter(Estimator):
             self._push_variance = energy.know_push()
         gained, variance = self._go(to, dt)
         pushed = self._pushed(t_total)
-        tared = p_total - self._tare - self._noise.acceleration * pushed
+        tared = p_total - self._zero - self._noise.acceleration * pushed
         nis_static, nis_total = energy.fly(
             dt,
             gained,
@@ -442,7 +454,7 @@ class AidedFilter(Estimator):
         ports = self.ports
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, self._gained.lift()
-        ports.seen_total = tared, nis_total
+        ports.seen_total = p_total, self._whole(tared), nis_total
         return nis_total, nis_static
 
     def _advance(self, to: float) -> None:
@@ -495,7 +507,8 @@ class AidedFilter(Estimator):
         behind = self.time - (end - self._total_age)
         if behind > OLDEST:
             return nan
-        if not self._onset.settled and not self._onset.settle(energy, self.time, reading - self._tare, air):
+        read, settled = reading, self._onset.settled
+        if not settled and not self._onset.settle(energy, self.time, self._whole(reading - self._zero), air):
             return nan
         pushed = self._pushed(end)
         variance = self._total_variance + pushed * pushed * self._push_variance
@@ -503,9 +516,9 @@ class AidedFilter(Estimator):
             slope = air.density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * air.gust * abs(energy.v) * behind
-        tared = reading - self._tare - self._noise.acceleration * pushed
+        tared = reading - self._zero - self._noise.acceleration * pushed
         if self.ports.total.faulty:
-            self.ports.hear_total(self._t, energy, end, reading, tared, variance)
+            self.ports.hear_total(self._t, energy, end, read, self._whole(tared), variance)
             return nan
         nis = energy.total(tared, variance, pushed, air.heat)
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
@@ -514,8 +527,12 @@ class AidedFilter(Estimator):
         if energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
-            self.ports.seen_total = tared, nis
+            self.ports.seen_total = read, self._whole(tared), nis
         return nis
+
+    def _whole(self, tared: float) -> float:
+        """Total pressure, Pa, of the tared channel."""
+        return tared + self.energy.p if self._difference.differential else tared
 
     def _pushed(self, end: float) -> float:
         """Specific force over the total pressure's conversion that ends then; a change of it widens b."""
@@ -543,8 +560,8 @@ class AidedFilter(Estimator):
             variance += self._unfolding.variance(self.time, t)
         if speed < 0.0:  # noqa: PLR1730
             speed = 0.0
-        share = self._temperature_share * speed / air.temperature
-        sd = sqrt(max(variance, 0.0) + share * share)
+        share, scale = self._temperature_share * speed / air.temperature, self._scale_share * speed
+        sd = sqrt(max(variance, 0.0) + share * share + scale * scale)
         total = isentropic(speed, static, air.heat)
         ports = self.ports
         valid = (

@@ -32,6 +32,8 @@ class EnergyFilter(EnergyModel):
         Of k, Pa/(m/s²).
     speed : float
         Airspeed at the start, m/s.
+    relative : bool
+        Whether the total pressure is read relative to the static one, by a differential sensor.
     """
 
     __slots__ = ()
@@ -53,11 +55,13 @@ class EnergyFilter(EnergyModel):
         difference_walk: float,
         acceleration_sd: float,
         speed: float = 0.0,
+        relative: bool = False,
     ) -> None:
         self._bias_time, self._bias_density = bias_time, 2.0 * bias_sd**2 / bias_time
         self._slope_density, self._slope_time = slope_rate**2, slope_time
         self._static_density = static_walk**2
         self._difference_density = difference_walk**2
+        self._relative = 1.0 if relative else 0.0
         self.b = self.d = self.k = self.innovation = 0.0
         self.taken = True
         self.v, self.s, self.p = speed, rest_force, static

@@ -79,7 +79,10 @@ class NoiseModel:
     difference_sd : float
         What the pair's difference may be at rest where no tare has found it, Pa.
     differential : bool
-        Whether the total pressure is the sum of the static one and of a difference that one sensor reads.
+        Whether the total pressure is the sum of the static one and of a difference that one sensor reads. Then
+        `total_sd`, `total_range` and `total_step` are those of the difference.
+    difference_scale_sd : float
+        Scale error of that difference, a fraction.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
@@ -118,3 +121,4 @@ class NoiseModel:
     rail_roll: Annotated[float, Interval(ge=-3.2, le=3.2)] = 0.0
     difference_sd: Annotated[float, Ge(0.0)] = 0.0
     differential: bool = False
+    difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0

@@ -15,6 +15,7 @@ tests fires first is chance, so the rules below say which port is flagged:
 from collections.abc import Iterable
 
 from uavsim.onboard.airspeed.air import SLOWEST, Air
+from uavsim.onboard.airspeed.difference import Difference
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.interface import NoiseModel
@@ -52,7 +53,8 @@ class Ports:
     total, static : TotalWatch, StaticWatch
         The watch over each port.
     seen_total : tuple or None
-        A total pressure that the filter has taken and nobody has judged yet: tared, Pa, and its NIS.
+        A total pressure that the filter has taken and nobody has judged yet: the channel as it was read
+        (`difference`), the pressure tared, Pa, and its NIS.
     seen_static : tuple or None
         A static pressure so: Pa, its instant, s, and the mean of −f_z since the one before, m/s².
     misses : int
@@ -85,7 +87,8 @@ class Ports:
         """
         rows = list(rows)
         if rows:
-            self._usual = [longest_row(row[i] for row in rows) for i in (1, 2)]
+            channel = Difference(self._noise.differential).read
+            self._usual = [longest_row(channel(row[1], row[2]) for row in rows), longest_row(row[2] for row in rows)]
         usual, noise = self._usual, self._noise
         white = noise.accelerometer_sd**2 / noise.accelerometer_rate
         offset, lift_offset = noise.accelerometer_offset_sd, noise.lift_offset_sd
@@ -96,7 +99,7 @@ class Ports:
 
     def forget_seen(self) -> None:
         """Judge nothing of what was read last."""
-        self.seen_total: tuple[float, float] | None = None
+        self.seen_total: tuple[float, float, float] | None = None
         self.seen_static: tuple[float, float, float] | None = None
 
     def tell(self, t: float, event: str, channel: str, kind: str = "") -> None:
@@ -129,12 +132,12 @@ class Ports:
             if kind or self.misses >= PERSISTENT:
                 self._flag_static(t, energy, kind or "jump")
         if self.seen_total is not None:
-            tared, nis = self.seen_total
+            read, tared, nis = self.seen_total
             self.seen_total = None
             if self.static.faulty:
                 return
             air = self._air
-            kind = self.total.take(energy, time, gained, self._lift, tared, nis, air)
+            kind = self.total.take(energy, time, gained, self._lift, read, tared, nis, air)
             if kind:
                 self._blame(t, energy, kind)
 
@@ -180,7 +183,7 @@ class Ports:
         end : float
             End of the conversion, s.
         reading, tared, variance : float
-            The pressure as it came, and tared, Pa; the variance of its noise, Pa².
+            The channel as it came, and the pressure tared, Pa; the variance of its noise, Pa².
         """
         speed = self._air.speed(tared, energy.p)
         slope = self._air.density * (speed if speed > SLOWEST else SLOWEST)

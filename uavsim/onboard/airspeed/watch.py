@@ -140,6 +140,7 @@ class TotalWatch:
         t: float,
         gained: float,
         lift: float,
+        read: float,
         reading: float,
         nis: float,
         air: Air,
@@ -152,8 +153,8 @@ class TotalWatch:
             At `t`, the reading's instant, s.
         gained, lift : float
             ∫ f_x dt up to there, m/s, and −f_z, m/s².
-        reading : float
-            Tared, Pa.
+        read, reading : float
+            The channel as it came (`difference`), and the pressure tared, Pa.
         nis : float
             Normalised innovation squared.
         air : Air
@@ -182,7 +183,7 @@ class TotalWatch:
         self._t, self._u = t, gained
         if self._wanders(v, change - energy.s * dt, test.lost, dt):
             return "leak"
-        return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
+        return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
     def _wanders(self, v: float, gained: float, lost: float, dt: float) -> bool:
         """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away."""
