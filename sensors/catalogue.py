@@ -7,6 +7,7 @@ is read by the same code.
 """
 
 import os
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -139,8 +140,7 @@ def _described(name: str, text: str) -> Description:
     sheet = parse_toml(text)
     check(sheet)
     document = f"{sheet['part']}: {sheet['document']}"
-    build = {"accelerometer": _accelerometer, "pressure": _pressure, "differential": _differential}[sheet["kind"]]
-    return build(name, document, sheet)
+    return _BUILD[sheet["kind"]](name, document, sheet)
 
 
 def path_of(name: str) -> Path:
@@ -222,3 +222,10 @@ def _mode(mode: dict[str, Any]) -> PressureMode:
         conversion_time=mode["conversion_ms"] / 1000,
         rate=float(mode["rate"]),
     )
+
+
+_BUILD: dict[str, Callable[[str, str, dict[str, Any]], Description]] = {
+    "accelerometer": _accelerometer,
+    "pressure": _pressure,
+    "differential": _differential,
+}

@@ -6,9 +6,10 @@
             └─ bay                                   thermometer                t_static)
 
 A head of kind "differential" has a differential sensor between the two lines in the place of the total sensor; what it
-makes of p_t − p_s is in `sensors.differential`. Its row has the same columns: p_total is the static reading plus that of
-the difference, and t_total the end of the difference's conversion. So whoever takes two pressures can take it, and
-p_total − p_static is the difference as it was read.
+makes of p_t − p_s is in `sensors.differential`. Its row has the same columns: p_total is the static reading plus the
+difference's, and t_total the end of the difference's conversion. So whoever takes two pressures can take it, and
+p_total − p_static is the difference as it was read. While the static sensor gives NaN, the difference stands on what it
+gave last.
 
 The sensors run freely, so the two values of a row are of different instants and as old as their clocks make them:
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
@@ -89,9 +90,9 @@ class AirDataHead:
     """
 
     __slots__ = (
-        "_dt", "_lines", "_membranes", "_next_poll", "_open", "_response", "_settings", "_static_error",
-        "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt", "_total_truth",
-        "covered_until", "due", "full", "static", "surroundings", "total",
+        "_dt", "_last_static", "_lines", "_membranes", "_next_poll", "_open", "_response", "_settings", "_static_error",
+        "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt",
+        "_total_truth", "covered_until", "due", "full", "static", "surroundings", "total",
     )  # fmt: skip
 
     def __init__(
@@ -112,6 +113,7 @@ class AirDataHead:
         if isinstance(first, DifferentialSettings):
             both = (tube for tube, _ in settings.tubes())
             self._response = Response(first.description(), both, reversed=first.polarity == "reversed")
+        self._last_static = nan
         channel = "total" if self._response is None else "differential"
         self.total = _sensor(first, forward, settings.thermal, streams, unit, f"{name}.{channel}")
         self.static = _sensor(second, down, settings.thermal, streams, unit, f"{name}.static")
@@ -183,7 +185,9 @@ class AirDataHead:
             p_total, _, t_total = self.total.read(t, self._total_truth)
             p_static, temperature, t_static = self.static.read(t, self._static_truth)
             if self._response is not None:
-                p_total += p_static
+                if p_static == p_static:
+                    self._last_static = p_static
+                p_total += self._last_static
             rows.append((t, p_total, p_static, temperature, t_total, t_static))
             t = self.due = self._next_poll()
         return rows
@@ -269,7 +273,10 @@ class AirDataHead:
 def _sensor(
     settings: PressureSettings | DifferentialSettings,
     normal: Triple,
-    thermal: ThermalSettings, streams: Streams, unit: Unit | None, name: str
+    thermal: ThermalSettings,
+    streams: Streams,
+    unit: Unit | None,
+    name: str,
 ) -> PressureSensor:
     return PressureSensor(
         settings.description(),

@@ -34,14 +34,14 @@ import sympy as sp
 
 # The order in which symbols are declared is the order in which factors and terms are printed: it fixes the rounding.
 ORDER = sp.symbols(
-    "density middle force gained curvature v b p heat power y relative s d pushed k ahead c dt bias slope variance walk drift "
-    "bias_time slope_time keep stay speed_sd bias_sd rest_sd static_sd difference_sd acceleration_sd",
+    "density middle force gained curvature v b p heat power y relative s d pushed k ahead c dt bias slope variance "
+    "walk drift bias_time slope_time keep stay speed_sd bias_sd rest_sd static_sd difference_sd acceleration_sd",
     positive=True,
 )
 (
-    density, middle, force, gained, curvature, v, b, p, heat, power, y, relative, s, d, pushed, k, ahead, c, dt, bias, slope,
-    variance, walk, drift, bias_time, slope_time, keep, stay, speed_sd, bias_sd, rest_sd, static_sd, difference_sd,
-    acceleration_sd,
+    density, middle, force, gained, curvature, v, b, p, heat, power, y, relative, s, d, pushed, k, ahead, c, dt, bias,
+    slope, variance, walk, drift, bias_time, slope_time, keep, stay, speed_sd, bias_sd, rest_sd, static_sd,
+    difference_sd, acceleration_sd,
 ) = ORDER  # fmt: skip
 STATES = (v, b, p, s, d, k)
 UNIT = sp.eye(6)

@@ -6,7 +6,7 @@ reading r, the absolute pressure p and the temperature T of the air, undone in t
     Δp_s = r p_cal/p,      Δp = Δp_s ± a (√(1 + 8 |Δp_s|/Δp_c) − 1),      a = 64 μ Σ(L/d⁴) ṁ_c R T/(π p)
 
 p_cal is the pressure of the calibration, ṁ_c and Δp_c are the part's flow, L and d the tubes'; μ follows Sutherland's
-law. Without the first a part of 966 hPa has 17 % too little airspeed at 3000 m (701 hPa), and 2 % too much at sea level.
+law. The first puts 17 % to the airspeed at 3000 m (701 hPa) of a part of 966 hPa, and takes 2 % off at sea level.
 
 p and T are those of the row, held until they have moved by `MOVED` and `WARMED`: a sensor that is stuck goes on to read
 the same number, which the watch over the ports looks for.

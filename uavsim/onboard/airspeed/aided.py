@@ -141,11 +141,12 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_difference", "_fastest", "_flight_force", "_force", "_gained", "_longest", "_noise", "_on_rail",
-        "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_share", "_scale_variance", "_settings", "_stamps",
-        "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_steady_from", "_steps", "_sudden", "_t",
-        "_tare", "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance",
-        "_u", "_unfolding", "_w", "_waiting", "_zero", "energy", "flying", "news", "ports", "time",
+        "_air", "_apart", "_difference", "_differential", "_fastest", "_flight_force", "_force", "_gained", "_longest",
+        "_noise", "_on_rail", "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_share",
+        "_scale_variance", "_settings", "_stamps", "_static_age", "_static_ends", "_static_spikes", "_static_variance",
+        "_steady_from", "_steps", "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_total_age",
+        "_total_ends", "_total_spikes", "_total_variance", "_u", "_unfolding", "_w", "_waiting", "_zero", "energy",
+        "flying", "news", "ports", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -164,7 +165,7 @@ class AidedFilter(Estimator):
         self._static_age = 0.5 * noise.static_window + noise.static_lag
         self._total_variance = max(noise.total_sd, MODEL) ** 2
         self._static_variance = max(noise.static_sd, MODEL) ** 2
-        self._difference = Difference(noise.differential)
+        self._difference, self._differential = Difference(noise.differential), noise.differential
         self._scale_share = 0.5 * noise.difference_scale_sd
         self._scale_variance = noise.accelerometer_scale_sd**2 + self._scale_share**2
         self._temperature_share = 0.5 * noise.temperature_sd
@@ -388,7 +389,7 @@ class AidedFilter(Estimator):
             temperature = nan
         air.at(energy.p, energy.s)
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
-        channel = self._difference.read(p_total, p_static)
+        channel = self._difference.read(p_total, p_static) if self._differential else p_total
         total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
             ports.jumped(t, energy, total == JUMPED, static == JUMPED)
@@ -454,7 +455,7 @@ class AidedFilter(Estimator):
         ports = self.ports
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, self._gained.lift()
-        ports.seen_total = p_total, self._whole(tared), nis_total
+        ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
         return nis_total, nis_static
 
     def _advance(self, to: float) -> None:
@@ -532,7 +533,7 @@ class AidedFilter(Estimator):
 
     def _whole(self, tared: float) -> float:
         """Total pressure, Pa, of the tared channel."""
-        return tared + self.energy.p if self._difference.differential else tared
+        return tared + self.energy.p if self._differential else tared
 
     def _pushed(self, end: float) -> float:
         """Specific force over the total pressure's conversion that ends then; a change of it widens b."""

@@ -220,9 +220,7 @@ class PaperFilter(Estimator):
         pressure_share = 0.5 * star_squared / at if at > 0.0 else 0.0  # at = 0 only without any noise
         temperature_share = self._temperature_share * speed / temperature
         scale_share = self._scale_share * speed
-        sd = sqrt(
-            pressure_share * pressure_share + temperature_share * temperature_share + scale_share * scale_share
-        )
+        sd = sqrt(pressure_share * pressure_share + temperature_share * temperature_share + scale_share * scale_share)
         if speed < star and sd > self._wind_sd:
             sd = self._wind_sd
         return sd, VALID * star <= speed <= self._fastest
