@@ -33,6 +33,7 @@ RECTIFICATION = number(0.0, 1e5)  # µg/g²: 0.1 g of offset from 1 g rms; the w
 DRIFT = number(0.0, 1e6)  # µg: 1 g of bias that wanders; parts have below 1000
 WALK = number(0.0, 1e6)  # µg/√s: 1 g after a second; parts have below 100
 
+LATER = 1.0  # K, by which a die may be warmer than on the rail: a climb of 150 m, or its own heat
 SWITCHED_ON = 60.0  # s, over which a walk of the offset counts
 UNQUANTISED_BITS = 40  # stand for no quantisation: steps of range/2^39, 6e-10 m/s² at ±32 g
 
@@ -287,6 +288,19 @@ class AccelerometerDescription:
             self.rectification_sd * shaking**2,
             self.gain_sd(warmer) * G0 * down,
             self.cross_axis_sd * G0 * sqrt(max(0.0, 1.0 - down * down)),
+        )
+
+    def wander_sd(self, *, shaking: float) -> float:
+        """Return by how much an offset that was found at rest may have moved in a flight of a minute, m/s².
+
+        Drift, random walk, a die that has become warmer by `LATER`, and what vibration is rectified to, which shakes
+        by `shaking`, m/s² rms, in flight and hardly at rest: of the worst axis.
+        """
+        return hypot(
+            self.drift_sd,
+            self.random_walk * sqrt(SWITCHED_ON),
+            max(self.bias_tc_sd) * LATER,
+            self.rectification_sd * shaking**2,
         )
 
     @property

@@ -64,6 +64,8 @@ class AccelerometerKnowledge:
         As `offset_sd`, of f_y.
     own_offset_sd, own_side_offset_sd, own_lift_offset_sd : float
         What the description of the part and its mounting allow of these, without the size of `accelerometer.bias`.
+    wander_sd : float
+        By how much an offset that was found at rest may have moved since, m/s².
     white_sd : float
         Noise of one reading of f_x by the part alone, without vibration, m/s²: a live part has at least that.
     step : float
@@ -83,6 +85,7 @@ class AccelerometerKnowledge:
     own_offset_sd: float
     own_side_offset_sd: float
     own_lift_offset_sd: float
+    wander_sd: float
     white_sd: float
     step: float
     range: float
@@ -203,6 +206,7 @@ def known_of_accelerometer(settings: AccelerometerSettings, vibration: Vibration
         own_offset_sd=own,
         own_side_offset_sd=own_side,
         own_lift_offset_sd=own_lift,
+        wander_sd=part.wander_sd(shaking=shaking),
         white_sd=noise,
         step=part.resolution,
         range=part.range if part.errors.saturation and _in_axes(settings.mounting_deg) else inf,

@@ -66,6 +66,7 @@ def test_each_mismatch_is_a_factor_on_its_own_belief(key: str, field: str) -> No
     together = {
         "lag": {"total_window", "static_window", "total_lag", "static_lag"},
         "accelerometer_offset": {"accelerometer_offset_sd", "lift_offset_sd", "side_offset_sd"}
+        | {"accelerometer_wander_sd"}
         | {f"own_{axis}offset_sd" for axis in ("", "side_", "lift_")},
         "drift": {"walk", "difference_sd"},
     }

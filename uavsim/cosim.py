@@ -32,6 +32,7 @@ from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.flow_through import FlowThrough
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
+from uavsim.onboard.rail_offset import RailOffset
 from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import STEP_RATES, Plant, Run
@@ -126,14 +127,14 @@ class Onboard:
         rate = scenario.accelerometer.description().rate
         self._release_time = release_time
         self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
+        noise = believed_noise(scenario, calibration)
         self.computer = FlightComputer(
             scenario.flight_computer,
             self._detector,
-            airspeed.build(
-                believed_air(scenario), believed_noise(scenario, calibration), tare_window(scenario, release_time)
-            ),
+            airspeed.build(believed_air(scenario), noise, tare_window(scenario, release_time)),
             rate,
             scenario.launch_axis,
+            RailOffset(noise),
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
         flow = believed_flow(scenario)

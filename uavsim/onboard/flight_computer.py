@@ -9,7 +9,8 @@ head, and turns detection into action:
 
 The end of the stroke is a short mean of f_x less its mean on the rail that stays below a level. Whether it was a launch
 tells the speed gained, the integral of the same since detection: a knock must not open the wings. The mean on the rail
-holds the accelerometer's offset, so no offset keeps the wings in.
+holds the accelerometer's offset, so no offset keeps the wings in. As far as the offset has been found on the rail
+(`uavsim.onboard.rail_offset`), it is taken off each reading first, for detector and estimator, too.
 
 In flight the throttle holds the ESTIMATED airspeed and the pitch command the height by static pressure; pitch and roll
 themselves are stabilised inside the aircraft:
@@ -40,6 +41,7 @@ from annotated_types import Interval
 from uavsim import airdata
 from uavsim.onboard.interface import Commands, Detector, Estimate, Estimator, News
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_FORCE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.rail_offset import RailOffset
 from uavsim.onboard.stamps import Stamps, jump
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
@@ -140,6 +142,8 @@ class FlightComputer:
         Nominal output data rate, Hz; sets how many readings the short mean of f_x holds.
     axis
         Signed body axis that points along the launch; what is said of f_x holds for it.
+    rail
+        Finds the accelerometer's offset while the aircraft waits; None: nothing is taken off the readings.
 
     Attributes
     ----------
@@ -158,6 +162,7 @@ class FlightComputer:
         estimator: Estimator,
         accelerometer_rate: float,
         axis: str = "+x",
+        rail: RailOffset | None = None,
     ) -> None:
         self.settings = settings
         self.detector = detector
@@ -167,6 +172,8 @@ class FlightComputer:
         self.events: list[dict[str, Any]] = []
         self._feel = estimator.accelerometer if estimator.aided else None
         self._news: News = estimator.news
+        self._rail = rail
+        self._offset = (0.0, 0.0, 0.0)
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
         self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
@@ -193,9 +200,14 @@ class FlightComputer:
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force, m/s^2, body axes."""
+        state = self.state
+        if self._rail is not None:
+            if state == "waiting":
+                self._rest(t, fx, fy, fz)
+            x, y, z = self._offset
+            fx, fy, fz = fx - x, fy - y, fz - z
         if self._feel is not None:
             self._feel(t, fx, fy, fz)
-        state = self.state
         if state == "flying":
             return
         if not 0.0 < t - self._t <= self._longest:
@@ -271,8 +283,24 @@ class FlightComputer:
         self._block_sum += fx
         self._block_count += 1
 
+    def _rest(self, t: float, fx: float, fy: float, fz: float) -> None:
+        """Look for the offset in a reading as it came; what has been found is taken off from here on."""
+        rail = self._rail
+        assert rail is not None
+        if not 0.0 < t - self._t <= self._longest:  # before its stamp is believed
+            return
+        rail.add(t, fx, fy, fz)
+        if rail.offset is not self._offset:
+            self._offset = rail.offset
+            if rail.odd is not None:
+                along, lift, elevation = rail.odd
+                rail.odd = None
+                self._note(t, "accelerometer_offset", offset=along, lift_offset=lift, elevation_error_deg=elevation)
+
     def _detected(self, t: float) -> None:
         self._note(t, "launch_detected")
+        if self._rail is not None and self._rail.found:
+            self.estimator.rested(self._rail.offset, self._rail.sd)
         self.state = "stroke"
         self._last = t
         self._speed_gain = 0.0
@@ -321,6 +349,8 @@ class FlightComputer:
             self._note(t, "rearmed")
             self.detector.reset()
             self._block_start, self._block_sum, self._block_count = None, 0.0, 0
+            if self._rail is not None:
+                self._rail.forget()
             self.state = "waiting"
 
     # -- cruise ------------------------------------------------------------------------------------------------------

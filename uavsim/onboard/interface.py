@@ -105,6 +105,17 @@ class Estimator:
     def launched(self, t: float) -> None:
         """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
 
+    def rested(self, offset: tuple[float, float, float], sd: tuple[float, float, float]) -> None:
+        """Be told of the accelerometer's offset as it was found on the rail, m/s², body axes, before `launched`.
+
+        Parameters
+        ----------
+        offset : (x, y, z)
+            What has been taken off the readings.
+        sd : (x, y, z)
+            How well the rest is known to be 0.
+        """
+
     def rearmed(self, t: float) -> None:
         """Be told that it was none and that the aircraft sits on its rail again."""
 

@@ -13,12 +13,13 @@ is computed on board in one go at the recognition and told nobody; here the filt
 once more, and what it would have said at each of them is written down.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sensors.mounting import attitude, linear
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.beliefs import believed_air, believed_noise
 from uavsim.cosim import draw, tare_window
@@ -33,6 +34,7 @@ from uavsim.onboard.airspeed import (
 )
 from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
 from uavsim.onboard.airspeed.rest_wind import HIDDEN, VISIBLE
+from uavsim.onboard.rail_offset import RailOffset, known
 from uavsim.scenario import scenario_of
 from uavsim.studies.cramer_rao import AirspeedBound, Courses, Schedule, Start
 from uavsim.truth import STANDARD_GRAVITY
@@ -85,17 +87,25 @@ def replayed(flight: Flight) -> Array:
     """Return t, airspeed, its standard deviation and the raw airspeed from where the filter starts on; shape (r, 4)."""
     scenario = scenario_of(flight)
     draws = draw(scenario)
-    estimator = RememberingFilter(
-        believed_air(scenario), believed_noise(scenario, draws.calibration), tare_window(scenario, draws.release_time)
-    )
+    noise = believed_noise(scenario, draws.calibration)
+    estimator = RememberingFilter(believed_air(scenario), noise, tare_window(scenario, draws.release_time))
+    rail = RailOffset(noise)
+    turn = linear(attitude(*scenario.accelerometer.mounting_deg))
     launch = flight.score["launch"]["detected_time"]
     wings = next((e["t"] for e in flight.events if e["event"] == "wings_commanded"), None)
     forces = iter(flight.accelerometer.to_numpy().tolist())
     force = next(forces, None)
     for row in flight.air_data.to_numpy().tolist():
         while force is not None and force[0] <= row[0]:
-            estimator.accelerometer(*force)
-            if force[0] == launch:
+            t, fx, fy, fz = force
+            if turn is not None:
+                fx, fy, fz = turn(fx, fy, fz)
+            if not estimator.flying:
+                rail.add(t, fx, fy, fz)
+            estimator.accelerometer(t, *rail.take_off(fx, fy, fz))
+            if t == launch:
+                if rail.found:
+                    estimator.rested(rail.offset, rail.sd)
                 estimator.launched(launch)
             if force[0] == wings:
                 estimator.unfolding(force[0])
@@ -152,6 +162,7 @@ def bound_of(flight: Flight, courses: Courses, kind: type[B]) -> tuple[Array, B]
     """Return the times of a flight's readings since its true launch, s, and the bound, which is not yet computed."""
     scenario = scenario_of(flight)
     noise = believed_noise(scenario, draw(scenario).calibration)
+    noise = replace(noise, accelerometer_offset_sd=known(noise)[0])
     settings = believed_air(scenario)
     score = flight.score["launch"]
     true, detected = score["true_time"], score["detected_time"]
@@ -172,8 +183,8 @@ def bound_of(flight: Flight, courses: Courses, kind: type[B]) -> tuple[Array, B]
     at_rest = (air.cover_off + start) * min(air.rate, rates[0])
     sigma = float(np.hypot(np.hypot(noise.total_sd, static_sd) / np.sqrt(max(1.0, at_rest)), tare))
     square = 2.0 * sigma * GAS_CONSTANT_DRY_AIR * courses.temperature / float(courses.static[:, 0].mean())
-    known = 0.5 * square / speed if speed * speed >= VISIBLE**2 * square else HIDDEN * np.sqrt(square)
-    begun = Start(rest, tare, min(float(known), settings.wind_sd))
+    wind_sd = 0.5 * square / speed if speed * speed >= VISIBLE**2 * square else HIDDEN * np.sqrt(square)
+    begun = Start(rest, tare, min(float(wind_sd), settings.wind_sd))
     return t[rows], kind(courses, schedule, settings, noise, begun)
 
 

@@ -24,6 +24,7 @@ from uavsim.beliefs import believed_air, believed_noise
 from uavsim.cosim import Cosimulation, Draws, draw, plant_settings, tare_window
 from uavsim.dispersions import resolved
 from uavsim.onboard import airspeed, launch
+from uavsim.onboard.rail_offset import RailOffset
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.plants.plant import Commands
 from uavsim.scenario import Scenario
@@ -88,22 +89,30 @@ def _run(
     detector = launch.build(scenario.detector, RATE)
     estimator = airspeed.build(
         believed_air(scenario),
-        believed_noise(scenario, draws.calibration),
+        noise := believed_noise(scenario, draws.calibration),
         tare_window(scenario, draws.release_time),
     )
+    rail = RailOffset(noise)
     feel, detect, step = estimator.accelerometer, detector.step, estimator.step
     rows = iter([*air, (float("inf"),) * 6])
-    row, told = next(rows), False
+    row, told, flying = next(rows), False, False
     begun = perf_counter()
     for force in forces:
         start = perf_counter() if steps is not None else 0.0
-        feel(*force)
-        if told:  # as the flight computer does it
+        t, fx, fy, fz = force
+        if not flying:  # as the flight computer does it, here and below
+            rail.add(t, fx, fy, fz)
+        x, y, z = rail.offset
+        fx, fy, fz = fx - x, fy - y, fz - z
+        feel(t, fx, fy, fz)
+        if told:
             estimator.tidy()
             feel, told = estimator.accelerometer, False
-        if detect(*force):
-            estimator.launched(force[0])
-        if row[0] <= force[0]:
+        if detect(t, fx, fy, fz):
+            flying = True
+            estimator.rested(rail.offset, rail.sd)
+            estimator.launched(t)
+        if row[0] <= t:
             step(*row)
             row, told = next(rows), True
         if steps is not None:

@@ -18,7 +18,8 @@ of the accelerometer costs one sum.
 **A differential sensor.** Its channel is Δp (`difference`), and the filter's total pressure is read relative to the
 static one (`energy_model`). Where it reads Δp (1 + κ) all that it can say is V' = V (1 + κ/2), and V̇' is that by as
 much. So the filter's airspeed is V', for which f_x has a scale error of κ/2 more, and σ_κ V/2 goes into what is told.
-What the force would say of κ itself in the stroke, a third of its variance at the best, is not used.
+What the force would say of κ itself in the stroke, a third of its variance at the best, is not used. A static port that
+is shut is shut for both sensors. Then Δp and the pressure that is shut in are together the total pressure.
 
 **Push.** The specific force bends the membranes of the pressure sensors. The known part of that error is taken off.
 What is not known of its coefficient is the state k until the flight is steady. The scale error of the accelerometer is
@@ -33,6 +34,7 @@ soon as the clocks of head and accelerometer agree.
 """
 
 from collections import deque
+from collections.abc import Iterator
 from dataclasses import replace
 from math import inf, nan, sqrt
 
@@ -41,28 +43,31 @@ from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.difference import Difference
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
+from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
+from uavsim.onboard.airspeed.lift import pulled
 from uavsim.onboard.airspeed.membrane_push import MembranePush
 from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.onset import ONE_SIDED, Onset
 from uavsim.onboard.airspeed.ports import PERSISTENT, Ports
+from uavsim.onboard.airspeed.push_end import PushEnd
+from uavsim.onboard.airspeed.rail import RailCheck, limits, pause
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import Row
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
+from uavsim.onboard.airspeed.stroke import StrokeTest, most_wind
 from uavsim.onboard.airspeed.unfolding import Unfolding
 from uavsim.onboard.interface import Estimate, Estimator, Feel, TareWindow
 from uavsim.onboard.plausible import (
     FASTEST,
     LEAST_PRESSURE,
-    LEAST_TEMPERATURE,
     MOST_FLIGHT_FORCE,
     MOST_FORCE,
     MOST_PRESSURE,
-    MOST_TEMPERATURE,
 )
 from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
@@ -78,8 +83,8 @@ ANYWHERE, AROUND = 3e4, 1e3
 
 # -- steady flight -----------------------------------------------------------------------------------------------------
 
-# s after the recognition, from which on the ports are watched and k is taken for known. Before, stroke, unfolding and
-# pull-up would seem faults. By hand, behind all three; docs/faults.md holds the check, the healthy flights
+# s after a filter that begins in flight, from which on the ports are watched and k is taken for known. After a launch
+# the force tells (`push_end`): stroke, unfolding and pull-up would seem faults. By hand
 STEADY = 2.0
 
 # -- which readings are taken; by hand, and docs/airspeed.md, "What no reading can do", holds the check ----------------
@@ -101,10 +106,15 @@ ALONE = 0.02
 # -- what is claimed ---------------------------------------------------------------------------------------------------
 
 VALID = 8.0  # σ_V from which on an airspeed is valid: 2 V* of the pressures' law (`paper`)
-# m/s, σ_V up to which an airspeed without its total port is valid; beyond it the airspeed hold falls back to a safe
+# m/s, σ_V up to which an airspeed that coasts is valid, whatever the reason: a flag, silence, NaN, a range's end; beyond it the airspeed hold falls back to a safe
 # throttle. By hand; docs/faults.md says how long that lasts
 COASTED = 2.0
+FRESH = 0.2  # s since a total pressure was taken, up to which the airspeed does not coast. By hand
 MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
+
+# s for which pressures alone are not valid after the filter has ended, or after they have jumped: what they say then is
+# as much in doubt as what it said. By hand
+WILD = 1.0
 
 # -- when the filter has diverged --------------------------------------------------------------------------------------
 
@@ -141,23 +151,75 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_difference", "_differential", "_fastest", "_flight_force", "_force", "_gained", "_longest",
-        "_noise", "_on_rail", "_onset", "_push", "_push_variance", "_read", "_rest", "_rows", "_scale_share",
-        "_scale_variance", "_settings", "_stamps", "_static_age", "_static_ends", "_static_spikes", "_static_variance",
-        "_steady_from", "_steps", "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_total_age",
-        "_total_ends", "_total_spikes", "_total_variance", "_u", "_unfolding", "_w", "_waiting", "_zero", "energy",
-        "flying", "news", "ports", "time",
+        "_air",
+        "_apart",
+        "_base",
+        "_difference",
+        "_differential",
+        "_fastest",
+        "_flight_force",
+        "_force",
+        "_fresh",
+        "_gained",
+        "_gated",
+        "_heard",
+        "_lift",
+        "_longest",
+        "_muted",
+        "_noise",
+        "_on_rail",
+        "_onset",
+        "_pause",
+        "_plain",
+        "_push",
+        "_push_end",
+        "_push_variance",
+        "_rail",
+        "_read",
+        "_rest",
+        "_rest_sd",
+        "_rows",
+        "_scale_share",
+        "_scale_variance",
+        "_settings",
+        "_stamps",
+        "_static_age",
+        "_static_ends",
+        "_static_spikes",
+        "_static_variance",
+        "_steady_from",
+        "_steps",
+        "_stroke",
+        "_sudden",
+        "_t",
+        "_tare",
+        "_tare_end",
+        "_temperature_share",
+        "_total_age",
+        "_total_ends",
+        "_total_spikes",
+        "_total_variance",
+        "_u",
+        "_unfolding",
+        "_w",
+        "_waiting",
+        "_warmth",
+        "_zero",
+        "energy",
+        "flying",
+        "news",
+        "ports",
+        "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
-        settings = replace(settings, aided=with_offset(settings.aided, noise.accelerometer_offset_sd))
-        aided = settings.aided
+        aided = self._plain = settings.aided
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
         self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
-        self._flight_force = MOST_FLIGHT_FORCE if aided.flight_force is None else aided.flight_force
-        self._flight_force += FARTHEST * noise.accelerometer_offset_sd
+        self._believe_offset(noise.accelerometer_offset_sd)
+        self._gained.end_at(*noise.accelerometer_range)
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
         self._push, self._force = MembranePush(noise, self._gained, self._rest), 0.0
         self._rows: deque[Row] = deque(maxlen=ROWS)
@@ -176,18 +238,25 @@ class AidedFilter(Estimator):
         self._total_ends, self._static_ends = Conversions(self._longest), Conversions(self._longest)
         sd = sqrt(max(self._total_variance, self._static_variance))
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
-        self._total_spikes, self._static_spikes = Spikes(), Spikes()
+        total, static, self._warmth = limits(noise)
+        self._total_spikes, self._static_spikes = Spikes(total), Spikes(static)
+        self._rail, self._pause = RailCheck(noise, self._tare_end), pause(noise)
+        self._stroke, self._push_end = StrokeTest(), PushEnd()
+        self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
+        self._heard, self._fresh, self._muted = [-inf, -inf, -inf], -inf, [False, False]
+        self._gated = inf  # s, from which on pressures alone are valid again after the filter has ended
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
         each = self._total_variance + (0.0 if noise.differential else self._static_variance)
         self._onset = Onset(each, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
-        self.ports = Ports(aided, self._air, noise, self._total_variance, self._static_variance)
+        self.ports = Ports(self._settings.aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
         self.flying = self._apart = False
         self._steps, self._read = 0, -inf
         self.time = self._t = -inf
         self._tare, self._push_variance, self._steady_from = 0.0, 0.0, inf
         self._u = self._w = 0.0
+        self._lift = GRAVITY
         self.energy = self._begin(-inf)
 
     # -- readings ----------------------------------------------------------------------------------------------------
@@ -222,10 +291,32 @@ class AidedFilter(Estimator):
             except (ArithmeticError, ValueError):  # Python raises these where other arithmetic gives inf or NaN
                 pass
             self._fall_back(t, "diverged")
+        return self._pressures_alone(t, p_total, p_static, temperature, t_total, t_static)
+
+    def _pressures_alone(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> Estimate | None:
+        """Filter the pressures by themselves: on the rail, and after the filter has ended."""
+        channel = self._difference.read(p_total, p_static)
+        if self._gated < inf:
+            reach = self._sudden + STEEP * (self._pause if t - self._t > self._pause else max(t - self._t, 0.0))
+            self._t = t
+            total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
+            p_total, p_static = p_total if total else nan, p_static if static else nan
+            if JUMPED in (total, static):
+                self._gated = max(self._gated, t + WILD)
+        self._rail.add(t, channel, p_static, temperature, t_total, t_static)
         estimate = self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
-        if estimate is not None:
-            self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
+        if estimate is None:
+            return None
+        self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
+        if estimate[6] and (t < self._gated < inf or self._rail.broken(t)):
+            return (*estimate[:6], False, *estimate[7:])
         return estimate
+
+    def doubts(self, t: float) -> tuple[str, ...] | None:
+        """Why the head is not ready to be launched; see `Estimator.doubts`."""
+        return self._rail.doubts(t) if self._rail.decided(t) else None
 
     def tidy(self) -> None:
         """Watch the ports by what was read last; the filter still stands where it stood then."""
@@ -244,6 +335,7 @@ class AidedFilter(Estimator):
     def _fall_back(self, t: float, kind: str) -> None:
         """Go on with the pressures alone, both ports believed: the force is of no flight, or of another time."""
         self.flying = False
+        self._gated = LATEST if self.ports.total.faulty or self.ports.static.faulty else t + WILD
         self._waiting.resume(self._total_spikes.last, self._static_spikes.last, self._sudden)
         self.ports.give_up(t, kind)
 
@@ -268,6 +360,21 @@ class AidedFilter(Estimator):
 
     # -- the filter's life -------------------------------------------------------------------------------------------
 
+    def rested(self, offset: tuple[float, float, float], sd: tuple[float, float, float]) -> None:
+        """Know the offset of f_x and f_z by what was found on the rail; see `Estimator`."""
+        noise = self._noise = replace(self._noise, accelerometer_offset_sd=sd[0], lift_offset_sd=sd[2])
+        self._believe_offset(sd[0])
+        low, high = noise.accelerometer_range
+        self._gained.end_at(low - offset[0], high - offset[0])
+        self.ports.believe(noise, self._settings.aided)
+
+    def _believe_offset(self, sd: float) -> None:
+        """Let b hold an offset of f_x of this standard deviation, m/s², beside the angle of attack."""
+        plain = self._plain
+        self._settings = replace(self._settings, aided=with_offset(plain, sd))
+        most = MOST_FLIGHT_FORCE if plain.flight_force is None else plain.flight_force
+        self._flight_force = most + FARTHEST * sd
+
     def launched(self, t: float) -> None:
         """Start the filter before a launch that has been recognised at `t`, and bring it up to date."""
         if self.flying or not -LATEST < t < LATEST:
@@ -277,7 +384,10 @@ class AidedFilter(Estimator):
         start = min(start, t)
         self.energy = self._begin(start)
         self._apart = False
-        self._start(start, t + PATIENCE, t + STEADY)
+        broken = self._rail.broken(t)
+        self._gated = inf
+        self._start(start, t + PATIENCE, inf)
+        self._begin_stroke(t, start, broken)
         try:
             for row in self._rows:
                 if row[4] - self._total_age > start or row[5] - self._static_age > start:
@@ -296,7 +406,46 @@ class AidedFilter(Estimator):
         self.flying = self._apart = False
         self._waiting.forget_time()
         self._rest.forget()
+        self._rail.forget()
+        self._gated = inf
         self._gained.bound(MOST_FORCE)
+
+    def _begin_stroke(self, t: float, start: float, broken: dict[str, str]) -> None:
+        """Begin the test of the stroke, and flag what the rail has shown to be dead."""
+        energy, onset = self.energy, self._onset
+        self._base = self.time, self._u, self._w
+        if "total" in broken or "static" in broken:  # then nothing has been seen of the wind
+            onset.wind = 0.0
+            energy.restart(0.0, self._settings.wind_sd**2)
+        for channel, kind in broken.items():
+            self._muted[1] = self._muted[1] or channel == "thermometer"
+            self.ports.dead_at_rest(t, energy, channel, kind, (0.0, self._settings.wind_sd**2))
+        self._stroke.begin(
+            () if broken else self._channels(),
+            tare_end=self._tare_end,
+            end=start,
+            variance=self._total_variance,
+            wind=most_wind(onset.wind, onset.sd, self._settings.wind_sd),
+            density=energy.p / self._air.gas,
+        )
+
+    def _channels(self) -> Iterator[Row]:
+        """Return the rows that were kept, each with its total channel in the place of the total pressure."""
+        read = Difference(self._differential).read
+        return ((row[0], read(row[1], row[2]), *row[2:]) for row in self._rows)
+
+    def _not_risen(self, kind: str) -> None:
+        """Flag the total port in the stroke. What it has told of the wind is void, and V is what the force gave."""
+        begun, _, w = self._base
+        since, gained = self.time - begun, self._speed_since_launch()
+        rest = self._rest_sd * since
+        variance = self._settings.wind_sd**2 + self._w - w + rest * rest + self._scale_variance * gained * gained
+        self.ports.not_risen(self._t, self.energy, kind, self._total_spikes.last, (gained, variance))
+
+    def _speed_since_launch(self) -> float:
+        """Return what the force has given since the launch at the filter's instant, m/s, that at rest taken off."""
+        begun, u, _ = self._base
+        return self._u - u - self._rest.mean * (self.time - begun)
 
     def _begin(self, start: float) -> EnergyFilter:
         """Make the filter of a launch, which starts on the rail at an instant, s."""
@@ -307,6 +456,7 @@ class AidedFilter(Estimator):
         self._air.begin(self._waiting.temperature)
         self._unfolding.forget()
         rest = self._rest.result(start)
+        self._rest_sd = rest[1]
         speed_sd = self._onset.look(self._rows, start, (self._tare, tare_variance), static / self._air.gas)
         core = self._core(
             speed=(self._onset.wind, speed_sd),
@@ -353,7 +503,7 @@ class AidedFilter(Estimator):
             difference_sd=difference_sd,
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
-            relative=noise.differential,
+            relative=self._differential,
         )
 
     def _start(self, start: float, patience: float, steady_from: float) -> None:
@@ -366,7 +516,10 @@ class AidedFilter(Estimator):
         self._push_variance, self._steady_from = 0.0, steady_from
         self._total_spikes.forget()
         self._static_spikes.forget()
-        self.ports.begin(self._rows)
+        self.ports.begin()
+        self._push_end.forget(steady_from)
+        self._heard, self._fresh, self._muted = [start, start, start], start, [False, False]
+        self._stroke.open = False
         self._total_ends.forget()
         self._static_ends.forget()
 
@@ -381,10 +534,12 @@ class AidedFilter(Estimator):
         if ports.seen_total is not None or ports.seen_static is not None:
             ports.judge(self._t, energy, self.time, self._u)
         before, self._t = self._t, t
-        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
+        heard, given = self._heard, temperature
+        if self._warmth[0] < temperature < self._warmth[1]:
             if temperature != air.temperature:
                 air.warm(temperature)
             air.measured = True
+            heard[2] = t
         else:
             temperature = nan
         air.at(energy.p, energy.s)
@@ -392,9 +547,16 @@ class AidedFilter(Estimator):
         channel = self._difference.read(p_total, p_static) if self._differential else p_total
         total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
-            ports.jumped(t, energy, total == JUMPED, static == JUMPED)
+            ports.jumped(t, energy, (self.time, self._u), total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
+        if new_total > 0:
+            heard[0] = t
+        if new_static > 0:
+            heard[1] = t
+        late = t - self._pause
+        if self._gained.newest < late or min(heard) < late or any(self._muted):
+            self._listen(t, late, (channel, p_static, given), (end_total, end_static))
         nis_total, nis_static = self._take(channel, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
         if total and static and temperature > 0.0:
@@ -402,10 +564,27 @@ class AidedFilter(Estimator):
             raw = isentropic_speed(excess, air.heat) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
+    def _listen(self, t: float, late: float, values: tuple[float, ...], ends: tuple[float, ...]) -> None:
+        """Flag a sensor of which nothing has been heard since `late`, s, and take back one that speaks again.
+
+        Pressures come back by themselves, when they agree (`readmission`).
+        """
+        ports, now = self.ports, (self.time, self._u)
+        for channel, heard, value, end in zip(("total", "static"), self._heard, values, ends, strict=False):
+            if heard < late:
+                kind = "silent" if end != end else "range" if value == value else "invalid"
+                ports.condemn(t, self.energy, now, channel, kind)
+        warmth = "" if self._heard[2] >= late else "range" if values[2] == values[2] else "invalid"
+        force = "" if self._gained.newest >= late else "silent"
+        for i, (channel, kind) in enumerate((("accelerometer", force), ("thermometer", warmth))):
+            if bool(kind) != self._muted[i]:
+                self._muted[i] = bool(kind)
+                ports.tell(t, "airspeed_fault" if kind else "airspeed_recovered", channel, kind)
+
     def _take(
         self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
     ) -> tuple[float, float]:
-        """Take what is new of a reading of the head, the channels; return the normalised innovations squared."""
+        """Take what is new of a reading of the head, its channels; return the normalised innovations squared."""
         nis_total = nis_static = nan
         to, at = t_total - self._total_age, t_static - self._static_age
         if new_total and new_static and self._steady(to, at):
@@ -453,9 +632,11 @@ class AidedFilter(Estimator):
             self._air.heat,
         )
         ports = self.ports
+        if nis_total <= GATE:
+            self._fresh = self._t
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
-        ports.seen_static = p_static, at, self._gained.lift()
-        ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
+        ports.seen_static = p_static, at, self._lift
+        ports.seen_total = p_total, tared + p_static if self._differential else tared, nis_total
         return nis_total, nis_static
 
     def _advance(self, to: float) -> None:
@@ -475,6 +656,9 @@ class AidedFilter(Estimator):
         u, w = self._gained.at(to)
         gained = u - self._u
         self._force = gained / dt - self._rest.mean
+        if self._steady_from == inf:
+            self._push_end.add(to, self._force, dt)
+            self._steady_from = self._push_end.steady_from
         variance = self._air.gust * (v if v > SLOWEST else SLOWEST) * dt
         if w > self._w:  # else readings have come late, and w has counted already that they might be lost
             variance = variance + w - self._w
@@ -482,6 +666,13 @@ class AidedFilter(Estimator):
                 self.ports.torn = True
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, to)
+        lift = self._gained.lift()
+        if lift == lift:
+            self._lift = lift
+        if self.time > self._steady_from:
+            turned, doubt = pulled(self._lift, v)
+            gained -= turned * dt
+            variance += doubt * dt
         self.time, self._u, self._w = to, u, w
         return gained, variance
 
@@ -496,7 +687,7 @@ class AidedFilter(Estimator):
         nis = energy.static(reading, self._static_variance, density * energy.v * ahead)
         ports.misses = 0 if energy.taken else ports.misses + 1
         if self.time > self._steady_from:
-            ports.seen_static = reading, at, self._gained.lift()
+            ports.seen_static = reading, at, self._lift
         elif ports.misses >= PERSISTENT:  # these are no spikes, and it is too early for a fault: the filter is wrong
             energy.widen_static(energy.innovation * energy.innovation)
             energy.static(reading, self._static_variance, 0.0)
@@ -508,8 +699,24 @@ class AidedFilter(Estimator):
         behind = self.time - (end - self._total_age)
         if behind > OLDEST:
             return nan
-        read, settled = reading, self._onset.settled
-        if not settled and not self._onset.settle(energy, self.time, self._whole(reading - self._zero), air):
+        if self._stroke.open and not self.ports.total.faulty:
+            pushed = self._force
+            rested = reading - self._noise.acceleration * pushed
+            unknown = self._noise.acceleration_sd * pushed
+            kind = self._stroke.add(rested, self._static_spikes.last, self._speed_since_launch(), unknown)
+            if kind:
+                self._not_risen(kind)
+                return nan
+        read, base = reading, 0.0  # as it came; what the pressure is read relative to, Pa
+        if self._differential:
+            base = self._difference.static
+            if self.ports.static.shut:  # to both sensors
+                reading, base = reading + base, 0.0
+            energy.read_relative(base > 0.0)
+        settled = self._onset.settled
+        if not settled and not self._onset.settle(
+            energy, self.time, reading - self._zero + base, base or energy.p, air
+        ):
             return nan
         pushed = self._pushed(end)
         variance = self._total_variance + pushed * pushed * self._push_variance
@@ -519,21 +726,19 @@ class AidedFilter(Estimator):
             variance += slope * slope * air.gust * abs(energy.v) * behind
         tared = reading - self._zero - self._noise.acceleration * pushed
         if self.ports.total.faulty:
-            self.ports.hear_total(self._t, energy, end, read, self._whole(tared), variance)
+            self.ports.hear_total(self._t, energy, end, read, (tared + base, base or energy.p), variance)
             return nan
         nis = energy.total(tared, variance, pushed, air.heat)
+        if energy.taken:
+            self._fresh = self._t
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.widen_speed((energy.innovation / slope) ** 2)
         if energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
-            self.ports.seen_total = read, self._whole(tared), nis
+            self.ports.seen_total = read, tared + base, nis
         return nis
-
-    def _whole(self, tared: float) -> float:
-        """Total pressure, Pa, of the tared channel."""
-        return tared + self.energy.p if self._differential else tared
 
     def _pushed(self, end: float) -> float:
         """Specific force over the total pressure's conversion that ends then; a change of it widens b."""
@@ -568,7 +773,8 @@ class AidedFilter(Estimator):
         valid = (
             VALID * sd <= speed <= self._fastest
             and air.measured
-            and (sd < COASTED or not ports.total.faulty)
-            and not ports.static.faulty  # without it V and the climb are hardly told apart
+            and (sd < COASTED or (t - self._fresh < FRESH and not ports.total.faulty))
+            # without it V and the climb are hardly told apart, but for a difference that has been read
+            and not (ports.static.faulty and (ports.static.shut or not self._differential))
         )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static

@@ -15,12 +15,16 @@ with ν and e what the two models are off by, and S the healthy one's variance f
 are no evidence.
 """
 
-from uavsim.onboard.airspeed.frozen import LEAST, MOST, SURPRISE
+from uavsim.onboard.airspeed.frozen import LEAST, MOST, SURPRISE, by_chance
 from uavsim.onboard.airspeed.gust import GRAVITY
+from uavsim.onboard.airspeed.lift import Pull
 
 # m/s and (m/s)/√s: the climb at the start, and what roll and pitch turn away from f_z. By hand: with a smaller rate a
 # turn would look like a shut port, with a greater one a shut port like a turn
 CLIMB_SD, CLIMB_RATE = 3.0, 0.2
+# s for which a pull (`lift`) may be a turn's and no change of climb: in a level turn at 60° f_z says 1 g, and the climb
+# stays. By hand: as long as it takes to roll; tests/onboard/test_airspeed_manoeuvres.py holds the check
+TURNING = 1.0
 BIAS_SD, BIAS_RATE = 0.5, 0.05  # m/s² and (m/s²)/√s of a. By hand, as the rate above
 DOUBT = 0.03  # nats that a reading takes off, so that chance does not add up. By hand; docs/faults.md holds the check
 
@@ -50,13 +54,28 @@ class ClimbTest:
     """
 
     __slots__ = (
-        "_aa", "_ca", "_cc", "_noise", "_pa", "_pc", "_pp", "a", "c", "climb_then", "evidence", "held",
-        "held_variance", "p", "since",
+        "_aa",
+        "_ca",
+        "_cc",
+        "_noise",
+        "_pa",
+        "_pc",
+        "_pp",
+        "_pull",
+        "a",
+        "c",
+        "climb_then",
+        "evidence",
+        "held",
+        "held_variance",
+        "p",
+        "since",
     )  # fmt: skip
 
     def __init__(self, variance: float, static: float, offset_sd: float = 0.0) -> None:
         self._noise = variance
         self.p = self.held = static
+        self._pull = Pull()
         self.c = self.a = self.evidence = self.since = self.climb_then = 0.0
         self._pp = self.held_variance = 1e6
         self._cc, self._aa = CLIMB_SD * CLIMB_SD, BIAS_SD * BIAS_SD + offset_sd * offset_sd
@@ -77,13 +96,17 @@ class ClimbTest:
             ρ g, Pa/m.
         """
         r, noise = weight * dt, self._noise
-        self.c += (lift - GRAVITY - self.a) * dt
+        pull = lift - GRAVITY
+        self._pull.add(lift, dt)
+        size = self._pull.size
+        rate = CLIMB_RATE * CLIMB_RATE + size * size * TURNING
+        self.c += (pull - self.a) * dt
         self.p -= r * self.c
         # c ← c − dt a, then p ← p − r c, each on rows and columns
         pa, ca, aa = self._pa, self._ca, self._aa
         pc = self._pc - dt * pa
         new_ca = ca - dt * aa
-        cc = self._cc - dt * (ca + new_ca) + CLIMB_RATE * CLIMB_RATE * dt
+        cc = self._cc - dt * (ca + new_ca) + rate * dt
         ca = new_ca
         new_pc = pc - r * cc
         pp = self._pp - r * (pc + new_pc) + 1e-3 * noise
@@ -92,12 +115,13 @@ class ClimbTest:
         spread = pp + noise
         innovation, still = reading - self.p, reading - self.held
         nis = innovation * innovation / spread
-        said = 0.5 * (nis - still * still / spread) - DOUBT
+        said = 0.5 * (nis - still * still / spread) - DOUBT - 2.0 * by_chance(noise / spread)
         evidence = self.evidence + (MOST if said > MOST else LEAST if said < LEAST else said)
         if not evidence > 0.0 and nis > SURPRISE:
             pp, pc, pa = pp + innovation * innovation, 0.0, 0.0
             spread += innovation * innovation
-        kp, kc, ka = pp / spread, pc / spread, pa / spread
+        kp, kc = pp / spread, pc / spread
+        ka = pa / spread if size == 0.0 else 0.0  # a turn teaches nothing of what f_z is off by
         self.p += kp * innovation
         self.c += kc * innovation
         self.a += ka * innovation

@@ -28,14 +28,16 @@ class Difference:
     ----------
     zero : float
         What the channel has above the pressure that it stands for, Pa.
+    static : float
+        The last static pressure that was a number, Pa.
     """
 
-    __slots__ = ("_static", "differential", "zero")
+    __slots__ = ("differential", "static", "zero")
 
     def __init__(self, differential: bool) -> None:
         self.differential = differential
         self.zero = ZERO if differential else 0.0
-        self._static = nan
+        self.static = nan
 
     def read(self, p_total: float, p_static: float) -> float:
         """Return the total channel of a row of two pressures, Pa; the rows come in their order.
@@ -45,8 +47,8 @@ class Difference:
         if not self.differential:
             return p_total
         if p_static == p_static:
-            self._static = p_static
-        difference = p_total - self._static
+            self.static = p_static
+        difference = p_total - self.static
         if not -ZERO < difference < ZERO:  # NaN, or no difference of two pressures
             return nan
         return round(difference * FINE) / FINE + ZERO

@@ -86,6 +86,10 @@ class EnergyFilter(EnergyModel):
         self.vk = self.bk = self.pk = self.sk = self.dk = 0.0
         return variance
 
+    def read_relative(self, relative: bool) -> None:
+        """Be told whether total pressures are read relative to the static one from here on."""
+        self._relative = 1.0 if relative else 0.0
+
     def restart(self, speed: float, variance: float) -> None:
         """Forget the airspeed for another, m/s, of the given variance, m²/s²."""
         self.v, self.vv = speed, variance
@@ -150,7 +154,7 @@ class EnergyFilter(EnergyModel):
         v, p = self.v, self.p
         self.b = 0.0
         self.predict(dt, gained, variance, density, False)
-        self.v = v + gained - dt * bias + (p - static) / (density * max(v, 1.0))
+        self.v = v + gained - dt * bias + (p - static) / (density * max(v, 10.0))
         self.b = bias
         self._part()
         return p

@@ -41,9 +41,24 @@ STILL = 0.06
 # more. By hand
 LEAST, MOST = -4.0, 2.0
 TURNED = 5.0  # times as fast as in still air b wanders in declared turbulence, whose vertical gusts turn f_x. By hand
-DOUBT = 0.02  # nats that a reading in still air takes off, so that chance does not add up. By hand, as `STILL`
+DOUBT = 0.02  # nats that a reading in still air takes off beside `by_chance`. By hand, as `STILL`
 # NIS beyond which a healthy model that is ahead doubts its own pressure: three standard deviations, by hand
 SURPRISE = 9.0
+
+
+def by_chance(share: float) -> float:
+    """Return what a reading says for "frozen" on average, in nats, where the true pressure stands still.
+
+    The healthy model follows the noise of its readings with the gain K = 1 − ρ, the constant does not. So ν² is greater
+    than e² by R·K/(2 − K), and ½ (ν² − e²)/S adds up in a flight at constant speed in still air. As much again, times
+    ρ, makes e^W a martingale: chance then passes a level of h nats once in e^h.
+
+    Parameters
+    ----------
+    share : float
+        ρ = R/S, the reading's variance over that of the innovation.
+    """
+    return 0.5 * share * (1.0 - share)
 
 
 class FrozenTest:
@@ -99,6 +114,7 @@ class FrozenTest:
         slope: float,
         gust: float,
         turn: float,
+        tilted: float = 0.0,
     ) -> float:
         """Take a reading; return the evidence.
 
@@ -116,6 +132,8 @@ class FrozenTest:
             Variance that the gust adds to the airspeed in that time, m²/s².
         turn : float
             x = n²/V², 1/m·m/s².
+        tilted : float
+            Variance that b gains in that time by a pull or a turn, (m/s²)².
         """
         noise, bb, bc, cc, pb, pc = self._noise, self._bb, self._bc, self._cc, self._pb, self._pc
         reach = slope * dt
@@ -124,7 +142,7 @@ class FrozenTest:
         new_pb, new_pc = pb - reach * bb - turned * bc, pc - reach * bc - turned * cc
         pp = self._pp - reach * (pb + new_pb) - turned * (pc + new_pc) + slope * slope * gust
         pb, pc = new_pb, new_pc
-        bb += self._bias_density * dt
+        bb += self._bias_density * dt + tilted
         spread = pp + noise + 4.0 * static_variance
         innovation = reading - 2.0 * static - self.pressure
         nis = innovation * innovation / spread
@@ -132,7 +150,7 @@ class FrozenTest:
         if self._declared:
             said = 0.5 * (log(spread / steady) + nis - still * still / steady)
         else:
-            said = 0.5 * (nis - still * still / spread) - DOUBT
+            said = 0.5 * (nis - still * still / spread) - DOUBT - by_chance(noise / spread)
         if said > MOST:
             said = MOST
         elif said < LEAST:

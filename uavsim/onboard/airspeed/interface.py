@@ -70,6 +70,8 @@ class NoiseModel:
         Offset of f_y, m/s².
     own_offset_sd, own_side_offset_sd, own_lift_offset_sd : float
         Offsets that the part's description allows, m/s²; one that is four times as large is told.
+    accelerometer_wander_sd : float
+        By how much an offset that was found on the rail may have moved since, m/s².
     rail_elevation : float or None
         Of the rail as the crew believes it, rad; None: not known, or there is no rail.
     rail_elevation_sd : float
@@ -116,6 +118,7 @@ class NoiseModel:
     own_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
     own_side_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
     own_lift_offset_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
+    accelerometer_wander_sd: Annotated[float, Interval(ge=0.0, le=100_000.0)] = 0.0
     rail_elevation: Annotated[float, Interval(ge=-1.6, le=1.6)] | None = None
     rail_elevation_sd: Annotated[float, Interval(ge=0.0, le=1.6)] = 0.0087
     rail_roll: Annotated[float, Interval(ge=-3.2, le=3.2)] = 0.0

@@ -49,8 +49,8 @@ class PortMonitor:
         Of a reading's noise, Pa².
     walk : float
         Random walk of the sensor's own error, Pa/√s.
-    usual : int
-        The longest row of equal readings that the live sensor has been seen to give.
+    row : float
+        How often its sensor may repeat a number (`uavsim.onboard.repeats`).
     gusts : bool
         Whether turbulence is declared, so that stillness is evidence.
     offset_sd : float
@@ -67,11 +67,11 @@ class PortMonitor:
     __slots__ = ("_down", "_gusts", "_level", "_offset_sd", "_rate", "_up", "_variance", "back", "frozen")
 
     def __init__(
-        self, bias_rate: float, variance: float, walk: float, usual: int, gusts: bool, offset_sd: float = 0.0
+        self, bias_rate: float, variance: float, walk: float, row: float, gusts: bool, offset_sd: float = 0.0
     ) -> None:
         self._variance, self._rate, self._gusts, self._offset_sd = variance, bias_rate, gusts, offset_sd
         self._level = FROZEN if gusts else CALM
-        self.back = Readmission(variance, walk, usual)
+        self.back = Readmission(variance, walk, row)
         self.restart()
 
     def restart(self) -> None:

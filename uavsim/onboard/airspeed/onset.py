@@ -34,15 +34,18 @@ class Onset:
     ----------
     wind : float
         The wind that is taken for a headwind, m/s; 0 for none, or once it is known which it was.
+    sd : float
+        Its standard deviation, m/s; infinite where nothing was read.
     settled : bool
         Whether total pressures are taken.
     """
 
-    __slots__ = ("_each", "_patience", "_tare_end", "_turning", "_wind_sd", "settled", "wind")
+    __slots__ = ("_each", "_patience", "_tare_end", "_turning", "_wind_sd", "sd", "settled", "wind")
 
     def __init__(self, each: float, tare_end: float, wind_sd: float) -> None:
         self._each, self._tare_end, self._wind_sd = each, tare_end, wind_sd
         self.wind = self._turning = 0.0
+        self.sd = inf
         self.settled, self._patience = False, inf
 
     def look(self, rows: Iterable[Row], end: float, tare: tuple[float, float], density: float) -> float:
@@ -70,6 +73,7 @@ class Onset:
                 each=self._each,
                 density=density,
             )
+        self.sd = sd
         self._turning = turning(self.wind, self._each, density)
         return min(sd, self._wind_sd)
 
@@ -77,19 +81,23 @@ class Onset:
         """Leave total pressures out from now on; from `patience`, s, on V is what they say, without a push, too."""
         self.settled, self._patience = False, patience
 
-    def settle(self, energy: EnergyFilter, time: float, total: float, air: Air) -> bool:
-        """Judge by a total pressure, tared, Pa, of an instant, s, whether it and those to come are taken."""
+    def settle(self, energy: EnergyFilter, time: float, total: float, air: Air, static: float | None = None) -> bool:
+        """Judge by a total pressure, tared, Pa, of an instant, s, whether it and those to come are taken.
+
+        The static pressure, Pa, is that of the filter, if no other is given.
+        """
+        static = energy.p if static is None else static
         late = not time < self._patience
         if energy.v * abs(energy.v) < ONE_SIDED * energy.vv:
             if not late:
                 return False
-            speed = air.speed(total, energy.p)
+            speed = air.speed(total, static)
             energy.restart(speed, max(energy.vv, speed * speed / ONE_SIDED))
         elif self.wind > 0.0:
             if energy.v < self._turning and not late:
                 return False
             wind, self.wind = self.wind, 0.0
-            if 2.0 * air.speed(total, energy.p) < energy.v + abs(energy.v - 2.0 * wind):  # it was a tailwind
+            if 2.0 * air.speed(total, static) < energy.v + abs(energy.v - 2.0 * wind):  # it was a tailwind
                 energy.shift_speed(-2.0 * wind)
                 return False
         self.settled = True

@@ -12,14 +12,13 @@ tests fires first is chance, so the rules below say which port is flagged:
 * Else the total port is flagged.
 """
 
-from collections.abc import Iterable
+from math import inf
 
 from uavsim.onboard.airspeed.air import SLOWEST, Air
-from uavsim.onboard.airspeed.difference import Difference
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.interface import NoiseModel
-from uavsim.onboard.airspeed.readmission import longest_row
+from uavsim.onboard.airspeed.rail import rows_allowed
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
 
@@ -64,7 +63,7 @@ class Ports:
     """
 
     __slots__ = (
-        "_aided", "_air", "_lift", "_noise", "_static_variance", "_total_variance", "_usual", "misses", "news",
+        "_aided", "_air", "_lift", "_noise", "_static_variance", "_total_variance", "misses", "news",
         "seen_static", "seen_total", "static", "torn", "total",
     )  # fmt: skip
 
@@ -73,27 +72,23 @@ class Ports:
     ) -> None:
         self._aided, self._air, self._noise = aided, air, noise
         self._total_variance, self._static_variance = total_variance, static_variance
-        self._usual = [0, 0]
         self.news: list[News] = []
-        self.begin(())
+        self.begin()
 
-    def begin(self, rows: Iterable[tuple[float, ...]]) -> None:
-        """Believe both ports, and begin to watch them.
+    def believe(self, noise: NoiseModel, aided: AidedSettings) -> None:
+        """Be told what is believed from the next `begin` on: the rail has shown the accelerometer's offset."""
+        self._noise, self._aided = noise, aided
 
-        Parameters
-        ----------
-        rows : iterable of tuple
-            Readings of the head on the rail, which show how the live sensors repeat themselves; none: as known before.
-        """
-        rows = list(rows)
-        if rows:
-            channel = Difference(self._noise.differential).read
-            self._usual = [longest_row(channel(row[1], row[2]) for row in rows), longest_row(row[2] for row in rows)]
-        usual, noise = self._usual, self._noise
+    def begin(self) -> None:
+        """Believe both ports, and begin to watch them."""
+        noise = self._noise
         white = noise.accelerometer_sd**2 / noise.accelerometer_rate
         offset, lift_offset = noise.accelerometer_offset_sd, noise.lift_offset_sd
-        self.total = TotalWatch(self._aided, self._total_variance, noise.walk, usual[0], offset, white)
-        self.static = StaticWatch(self._static_variance, noise.walk, usual[1], lift_offset)
+        total, static = rows_allowed(noise)
+        # in the row of a head with a differential sensor the static sensor's noise is in the total pressure, too
+        variance = self._total_variance + (self._static_variance if noise.differential else 0.0)
+        self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white)
+        self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset)
         self._lift, self.misses, self.torn = GRAVITY, 0, False
         self.forget_seen()
 
@@ -139,30 +134,55 @@ class Ports:
             air = self._air
             kind = self.total.take(energy, time, gained, self._lift, read, tared, nis, air)
             if kind:
-                self._blame(t, energy, kind)
+                self._blame(t, energy, (time, gained), kind)
 
-    def jumped(self, t: float, energy: EnergyFilter, total: bool, static: bool) -> None:
-        """Flag the port whose pressure has jumped and stays there."""
+    def jumped(self, t: float, energy: EnergyFilter, now: tuple[float, float], total: bool, static: bool) -> None:
+        """Flag the port whose pressure has jumped and stays there; `now` as of `TotalWatch.flag`."""
         if static and not self.static.faulty:
             self._flag_static(t, energy, "jump")
         if total and not (self.total.faulty or self.static.faulty):
-            self._flag_total(t, energy, "jump")
+            self._flag_total(t, energy, now, "jump")
 
-    def _blame(self, t: float, energy: EnergyFilter, kind: str) -> None:
+    def _blame(self, t: float, energy: EnergyFilter, now: tuple[float, float], kind: str) -> None:
         """Flag the port that is to blame for a total pressure in which something seems wrong; see the module."""
         if kind != "stuck" and self.static.suspect:
             self._flag_static(t, energy, "frozen")
         elif kind == "unfit" or self.static.repeating:
             return
         elif kind != "frozen" or not (self.static.doubtful and self.total.port.unsure):
-            self._flag_total(t, energy, kind)
+            self._flag_total(t, energy, now, kind)
 
-    def _flag_total(self, t: float, energy: EnergyFilter, kind: str) -> None:
-        self.total.flag(kind, energy, self._air.density, self._air.gust)
+    def condemn(self, t: float, energy: EnergyFilter, now: tuple[float, float], channel: str, kind: str) -> None:
+        """Flag a channel whose sensor is dead for certain; `now` as of `TotalWatch.flag`."""
+        if channel == "total":
+            if not self.total.faulty:
+                self._flag_total(t, energy, now, kind)
+        elif not self.static.faulty:
+            self._flag_static(t, energy, kind)
+
+    def dead_at_rest(self, t: float, energy: EnergyFilter, channel: str, kind: str, speed: tuple[float, float]) -> None:
+        """Flag a sensor that the rail has shown to be dead; V, m/s, and its variance at the start of the launch."""
+        if channel == "total":
+            self.total.flag_in_stroke(energy, t, (0.0, inf), speed)
+            self.tell(t, "airspeed_fault", channel, kind)
+        elif channel == "static":
+            self._flag_static(t, energy, kind)
+        else:
+            self.tell(t, "airspeed_fault", channel, kind)
+
+    def not_risen(self, t: float, energy: EnergyFilter, kind: str, held: float, speed: tuple[float, float]) -> None:
+        """Flag a total port that has not risen in the stroke; the pressure in it, Pa, and V with its variance."""
+        self.total.flag_in_stroke(energy, t, (held, self._total_variance), speed)
+        self.tell(t, "airspeed_fault", "total", kind)
+        if kind == "swapped" and not self.static.faulty and not self._noise.differential:
+            self._flag_static(t, energy, kind)
+
+    def _flag_total(self, t: float, energy: EnergyFilter, now: tuple[float, float], kind: str) -> None:
+        self.total.flag(kind, energy, now, self._air.density, self._air.gust)
         self.tell(t, "airspeed_fault", "total", kind)
 
     def _flag_static(self, t: float, energy: EnergyFilter, kind: str) -> None:
-        self.static.flag(kind, energy, self._air.density, self.total.port.frozen.lost)
+        self.static.flag(kind, energy, t, self._air.density, self.total.port.frozen.lost)
         self.misses = 0
         self.total.port.restart()
         self.tell(t, "airspeed_fault", "static", kind)
@@ -170,7 +190,13 @@ class Ports:
     # -- the way back --------------------------------------------------------------------------------------------------
 
     def hear_total(
-        self, t: float, energy: EnergyFilter, end: float, reading: float, tared: float, variance: float
+        self,
+        t: float,
+        energy: EnergyFilter,
+        end: float,
+        reading: float,
+        pressures: tuple[float, float],
+        variance: float,
     ) -> None:
         """Compare a flagged total port with the filter that coasts; take it back when they have agreed for long enough.
 
@@ -182,10 +208,15 @@ class Ports:
             The filter that coasts.
         end : float
             End of the conversion, s.
-        reading, tared, variance : float
-            The channel as it came, and the pressure tared, Pa; the variance of its noise, Pa².
+        reading : float
+            The channel as it came, Pa.
+        pressures : (total, static)
+            The total pressure tared, and the static one, Pa.
+        variance : float
+            Of the channel's noise, Pa².
         """
-        speed = self._air.speed(tared, energy.p)
+        tared, static = pressures
+        speed = self._air.speed(tared, static)
         slope = self._air.density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)

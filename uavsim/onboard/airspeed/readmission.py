@@ -7,8 +7,9 @@ It agrees when its readings fit the coasting filter for a second. That second do
 ten.
 """
 
-from collections.abc import Iterable
-from math import inf, nan
+from math import inf
+
+from uavsim.onboard.repeats import LEAST
 
 WANDER = 4.0  # times the sensor's walk, in variance, that a pressure which is shut in may wander. By hand
 # squared standard deviations at which a reading's part is clipped: one spike does not show that a port lives
@@ -17,23 +18,10 @@ CLIP = 9.0
 # which the port lives. By hand; test_a_port_that_is_still_shut_is_not_taken_back
 ALIVE, STIRRED = 2.0, 25.0
 AGREE = 9.0  # squared standard deviations within which a port agrees with the coasting filter: three of them, by hand
-# readings of one value, or so many times the longest row on the rail, from which on a sensor is stuck. Noise of half a
-# step repeats one reading in three, and 25 in a row once in 10¹². A sensor of coarser steps has shown on the rail what
-# it does. By hand
-SAME, TIMES = 25, 4
 FEW = 5  # parts of that row. After the first it may be a beginning, and no other port is blamed meanwhile. By hand
 # s: how long a port must agree, how soon after its return a flag doubles that, and the most that it must. By hand;
 # docs/faults.md, column "taken back"
 RETURN, SOON, LONGEST = 1.0, 10.0, 60.0
-
-
-def longest_row(readings: Iterable[float]) -> int:
-    """Return by how many readings, at the most, one value has been followed by itself."""
-    longest, same, last = 0, 0, nan
-    for reading in readings:
-        same = same + 1 if reading == last else 0
-        last, longest = reading, max(longest, same)
-    return longest
 
 
 class Readmission:
@@ -45,8 +33,8 @@ class Readmission:
         Of a reading's noise, Pa².
     walk : float
         Random walk of the sensor's own error, Pa/√s.
-    usual : int
-        The longest row of equal readings that the live sensor has been seen to give.
+    row : float
+        How often its sensor may repeat a number (`uavsim.onboard.repeats`).
 
     Attributes
     ----------
@@ -61,8 +49,8 @@ class Readmission:
         "_variance", "_wait", "_walk", "faulty", "same",
     )  # fmt: skip
 
-    def __init__(self, variance: float, walk: float, usual: int = 0) -> None:
-        self._most = max(SAME, TIMES * usual)
+    def __init__(self, variance: float, walk: float, row: float = LEAST) -> None:
+        self._most = row
         self._variance, self._walk = variance, WANDER * walk * walk
         self.faulty = self._trapped = False
         self._wait, self._returned, self._agreed, self._heard = RETURN, -inf, inf, -inf

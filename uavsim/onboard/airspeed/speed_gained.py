@@ -8,6 +8,10 @@ each, has brought into u. It grows with time alone.
 Where readings are missing, for five periods and more, and beyond the newest reading, u goes on with the mean of the
 readings beside. w then grows as by an unknown acceleration of 5 m/s² standard deviation that lasts for all of the gap.
 
+A force at the end of the accelerometer's range has been clipped: it is at least so large, and nobody knows how much
+larger. It is summed as it is read, and w grows as by an unknown acceleration of a fifth of the range that lasts as long
+as the readings stay there.
+
 After a step of the clock (`uavsim.onboard.stamps`) nothing from before can be asked for. The ring begins anew, and u
 goes on.
 
@@ -27,6 +31,7 @@ GAP = 5.0  # periods without a reading, from which on it is a gap; fewer are jit
 # standard deviations of a reading up to which it is plausible in flight, where heavy shaking makes more than the bound
 # of a force of flight. By hand
 NOISY = 10.0
+CLIPPED = 0.2  # share of the range, by which a force may be beyond it (standard deviation). By hand
 GAP_SD = 5.0  # m/s², what an acceleration that nobody has read may be: that of a strong pull-up in flight. By hand
 
 
@@ -53,8 +58,9 @@ class SpeedGained:
     """
 
     __slots__ = (
-        "_f", "_first", "_gap", "_gaps", "_head", "_lag", "_lift", "_lifts", "_most", "_most_lift", "_old", "_rate",
-        "_shake", "_size", "_stamps", "_sum", "_t", "_u", "_white", "newest", "steps",
+        "_beyond", "_clipped", "_f", "_first", "_gap", "_gaps", "_head", "_high", "_lag", "_lift", "_lifts", "_low",
+        "_most", "_most_lift", "_old", "_rate", "_shake", "_size", "_stamps", "_sum", "_t", "_u", "_white", "newest",
+        "steps",
     )  # fmt: skip
 
     def __init__(self, sd: float, rate: float, size: int = SIZE, lag: float = 0.0) -> None:
@@ -68,6 +74,8 @@ class SpeedGained:
         self._first, self.newest = inf, -inf
         self._old, self.steps, self._stamps = 0.0, 0, Stamps(jump(rate))
         self._lift, self._lifts = 0.0, 0
+        self._clipped = 0.0  # s, for how long readings have been at an end
+        self.end_at(-inf, inf)
 
     @property
     def oldest(self) -> float:
@@ -83,11 +91,25 @@ class SpeedGained:
                 return
             elapsed = self._after_a_gap(t, fx)
         u = self._sum = self._sum + 0.5 * (self._f + fx) * elapsed
+        if not self._low < fx < self._high:
+            self._clip(t, elapsed)
+        elif self._clipped:
+            self._clipped = 0.0
         self._f, self.newest = fx, t
         self._lift -= fz
         self._lifts += 1
         head = self._head = (self._head + 1) % self._size
         self._t[head], self._u[head] = t, u
+
+    def _clip(self, t: float, elapsed: float) -> None:
+        """Note that a reading has been clipped: what is unknown in it is the same as in those before."""
+        before = self._clipped
+        self._clipped = before + elapsed
+        if self._clipped > 0.0:
+            gaps = self._gaps
+            if len(gaps) == GAPS:
+                self._old += gaps[0][2]
+            gaps.append((t - elapsed, t, self._beyond**2 * (self._clipped**2 - before**2)))
 
     def _after_a_gap(self, t: float, fx: float) -> float:
         """Note what no reading tells of the time since the last; return that time, s: 0 after a step of the clock."""
@@ -104,6 +126,11 @@ class SpeedGained:
             gaps.clear()
         self._first, self._f = t, fx
         return 0.0
+
+    def end_at(self, low: float, high: float) -> None:
+        """Be told where readings end, m/s², the offset taken off: at an end they are clipped."""
+        self._low, self._high = low, high
+        self._beyond = CLIPPED * 0.5 * (high - low) if high - low < inf else 0.0
 
     def bound(self, most: float) -> None:
         """Be told the greatest plausible force, m/s²; in flight it is less than that of a launch."""

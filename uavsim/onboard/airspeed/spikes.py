@@ -17,15 +17,21 @@ LEFT_OUT, TAKEN, JUMPED = 0, 1, 2
 class Spikes:
     """The pressures of one channel.
 
+    Parameters
+    ----------
+    bounds : (low, high)
+        Between which a pressure is a measurement, Pa; the ends of a sensor's range are none.
+
     Attributes
     ----------
     last : float
         The one that was taken last, Pa; NaN before.
     """
 
-    __slots__ = ("_after", "_row", "_value", "last")
+    __slots__ = ("_after", "_high", "_low", "_row", "_value", "last")
 
-    def __init__(self) -> None:
+    def __init__(self, bounds: tuple[float, float] = (LEAST_PRESSURE, MOST_PRESSURE)) -> None:
+        self._low, self._high = bounds
         self.forget()
 
     def forget(self) -> None:
@@ -39,11 +45,11 @@ class Spikes:
         Parameters
         ----------
         value : float
-            Pa; one that is NaN or implausible is left out.
+            Pa; one that is NaN or no measurement is left out.
         reach : float
             How far it can have moved since the last one, Pa.
         """
-        if not LEAST_PRESSURE <= value <= MOST_PRESSURE:
+        if not self._low < value < self._high:
             return LEFT_OUT
         last = self.last
         if -reach <= value - last <= reach or last != last:

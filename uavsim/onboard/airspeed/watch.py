@@ -25,9 +25,11 @@ from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
+from uavsim.onboard.airspeed.lift import Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
+from uavsim.onboard.repeats import LEAST, apart
 
 Kept = tuple[float, float, float, float, float, float, float]
 """When, s; ∫ f_x dt, V, its variance, p, b and its variance."""
@@ -56,11 +58,11 @@ LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried
 # that goes on leaking would agree with any airspeed at last. By hand; docs/faults.md, "After a flag"
 AGREE_SD = 5.0 / 3.0
 
-# -- sensors of coarse steps -------------------------------------------------------------------------------------------
-
-# equal readings in a row that chance makes while the noise is at least half a step. A longer row on the rail shows a
-# coarser sensor, whose readings say less. By hand; test_a_sensor_of_coarse_steps_may_repeat_itself
-FINE = 6
+# kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
+UNTAKEN = ("jump", "silent", "invalid", "range")
+ASTRAY = ("drift", "leak", "jump")
+# kinds of a static port that is shut, to both sensors of a head that has a differential one; others are of its sensor
+SHUT_IN = ("frozen", "swapped")
 
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
 
@@ -78,11 +80,6 @@ BIAS_SD = 0.1  # m/s², of b after the flag, which is taken from the total port'
 LEAST_FLIGHT = 10.0  # m/s, below which no wing flies, and lift says nothing of the angle of attack
 
 
-def apart(usual: int) -> float:
-    """Return how many readings say as much as one, by the longest row of equal ones that a live sensor has given."""
-    return max(1.0, usual / FINE)
-
-
 class TotalWatch:
     """Tests of the total pressure's port.
 
@@ -92,8 +89,8 @@ class TotalWatch:
         What is believed of the air.
     variance, walk : float
         Of a reading's noise, Pa², and random walk of the pair's difference, Pa/√s.
-    usual : int
-        The longest row of equal readings that the live sensor has been seen to give.
+    row, alike : float
+        How often its sensor may repeat a number, and how probable a repetition is (`uavsim.onboard.repeats`).
     offset_sd : float
         Offset of f_x, m/s².
     force_density : float
@@ -108,7 +105,7 @@ class TotalWatch:
 
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_p", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
+        "_last", "_lost", "_near", "_p", "_pull", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
         "port",
     )  # fmt: skip
 
@@ -117,7 +114,8 @@ class TotalWatch:
         aided: AidedSettings,
         variance: float,
         walk: float,
-        usual: int = 0,
+        row: float = LEAST,
+        alike: float = 0.0,
         offset_sd: float = 0.0,
         force_density: float = 0.0,
     ) -> None:
@@ -126,12 +124,13 @@ class TotalWatch:
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
-        self.port = PortMonitor(aided.bias_rate, variance * apart(usual), walk, usual, self._declared, offset_sd)
+        self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
         self.faulty = self._astray = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
         self._near, self._taught = 0, 0.0
+        self._pull = Pull()
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
     def take(
@@ -177,7 +176,8 @@ class TotalWatch:
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn) == 0.0
+        tilted = self._pull.add(lift, dt)
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn, tilted) == 0.0
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
@@ -209,27 +209,48 @@ class TotalWatch:
         left = self._jumped * exp(-2.0 * since / self._bias_time) if since > 0.0 else self._jumped
         return self._bias_sd * self._bias_sd + left
 
-    def flag(self, kind: str, energy: EnergyFilter, density: float, gust: float) -> None:
-        """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong."""
+    def flag(self, kind: str, energy: EnergyFilter, now: tuple[float, float], density: float, gust: float) -> None:
+        """Flag the port, and put the filter to where it would be without what it has taken of it since it was wrong.
+
+        Parameters
+        ----------
+        kind : str
+        energy : EnergyFilter
+        now : tuple of float
+            The instant at which it stands, s, and ∫ f_x dt, m/s.
+        density, gust : float
+            ρ, kg/m³, and the gusts' density, m/s².
+        """
         test = self.port.frozen
-        if kind == "jump":  # the filter has taken nothing of it
-            self._trusted = self._t, self._u, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
-        elif kind != "frozen":  # it had been wrong for a while before the flag
+        trusted, (t, gained) = self._trusted, now
+        if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
             before = self._sound if kind == "leak" else self._before[0]
             if before is not NOTHING:
-                self._trusted = before
-        then, u, v, vv, p, self._bias, bb = self._trusted
+                trusted = before
+        if kind in UNTAKEN or trusted is NOTHING:  # the filter has taken nothing of it
+            trusted = t, gained, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
+        then, u, v, vv, p, self._bias, bb = trusted
         speed = max(v, 1.0)
-        since, slope = self._t - then, density * speed
+        since, slope = t - then, density * speed
         if kind == "frozen":
-            self.port.back.flag(self._t, test.held, test.held_variance)
+            self.port.back.flag(t, test.held, test.held_variance)
         else:
-            self.port.back.flag(self._t)
-        self.faulty, self._astray = True, kind in ("drift", "leak")
-        v = v + self._u - u - self._bias * since + (energy.p - p) / slope
+            self.port.back.flag(t)
+        self.faulty, self._astray = True, kind in ASTRAY
+        v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
         energy.coast_from(v, vv, self._bias, bb, since)
+        self._p = energy.p
+
+    def flag_in_stroke(
+        self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
+    ) -> None:
+        """Flag a port that has not risen in the stroke: V is what the force gave; pressure and V with their variance."""
+        self.port.back.flag(t, *held)
+        self.faulty = self._astray = True
+        self._bias = 0.0
+        energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
 
     def carry(self, energy: EnergyFilter, dt: float, gained: float, variance: float, density: float) -> None:
@@ -255,23 +276,25 @@ class StaticWatch:
     ----------
     variance, walk : float
         Of a reading's noise, Pa², and random walk of the sensor, Pa/√s.
-    usual : int
+    row, alike : float
         As of `TotalWatch`.
     offset_sd : float
         Offset of f_z, m/s².
 
     Attributes
     ----------
-    faulty : bool
-        Whether the port is flagged.
+    faulty, shut : bool
+        Whether the port is flagged, and whether that is because it has been shut.
     """
 
-    __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty")
+    __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut")
 
-    def __init__(self, variance: float, walk: float, usual: int = 0, offset_sd: float = 0.0) -> None:
-        self._variance, self._offset_sd = variance * apart(usual), offset_sd
-        self._back = Readmission(variance, walk, usual)
-        self._test, self._t, self.faulty = ClimbTest(variance, 0.0, offset_sd), -inf, False
+    def __init__(
+        self, variance: float, walk: float, row: float = LEAST, alike: float = 0.0, offset_sd: float = 0.0
+    ) -> None:
+        self._variance, self._offset_sd = variance * apart(alike), offset_sd
+        self._back = Readmission(variance, walk, row)
+        self._test, self._t, self.faulty, self.shut = ClimbTest(variance, 0.0, offset_sd), -inf, False, False
 
     @property
     def suspect(self) -> bool:
@@ -313,14 +336,14 @@ class StaticWatch:
         evidence = self._test.add(reading, dt, lift, density * GRAVITY)
         return "frozen" if evidence > SHUT else ""
 
-    def flag(self, kind: str, energy: EnergyFilter, density: float, bias: float) -> None:
-        """Flag the port; if it was shut, put the filter to where the climb before that would have led."""
+    def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
+        """Flag the port at `t`, s; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
-        self.faulty = True
+        self.faulty, self.shut = True, kind in SHUT_IN
         if kind != "frozen":
-            self._back.flag(self._t)
+            self._back.flag(t)
             return
-        self._back.flag(self._t, test.held, test.held_variance)
+        self._back.flag(t, test.held, test.held_variance)
         weight, v = density * GRAVITY, max(energy.v, 1.0)
         off = weight * CLIMB_SD
         p = test.held - weight * test.climb_then * test.since
@@ -337,5 +360,5 @@ class StaticWatch:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
         if not self._back.hear(t, reading, reading, difference, spread):
             return False
-        self.faulty, self._t = False, -inf
+        self.faulty, self.shut, self._t = False, False, -inf
         return True

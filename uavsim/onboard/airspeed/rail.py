@@ -1,0 +1,187 @@
+"""Whether the head's sensors are alive while the aircraft waits on its rail, by their descriptions.
+
+    silent   no new conversion for `SILENT`
+    invalid  nothing but NaN for so long
+    range    nothing but readings at or beyond the ends of the range
+    stuck    the same number for longer than its noise allows (`uavsim.onboard.repeats`)
+    offset   under the cover the pair differs by more than `FAR` standard deviations of what its descriptions allow
+
+What a sensor has read itself is never taken for normal. That a port is shut or covered no pressure at rest can tell: a
+live one does not move either. That is for the stroke (`stroke`).
+"""
+
+from math import hypot, inf, isfinite, nan, sqrt
+
+from uavsim.onboard.airspeed.difference import ZERO
+from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.repeats import alike, longest_row
+
+# s without a reading, after which a sensor is silent. Readings that are lost by chance, up to 7 in 10 at 100 Hz, make
+# such a pause once in 10⁸; more is a fault. By hand
+SILENT = 0.5
+PERIODS = 10.0  # the same of a slow head, periods
+SETTLED = 1.0  # s of readings before anything is said. By hand
+FAR = 4.0  # standard deviations: one healthy pair in 16 000
+LEAST_OFFSET = 30.0  # Pa, below which no difference is told: 7 m/s at rest, which the tare takes off. By hand
+
+WORDS = {
+    "silent": "no reading comes",
+    "invalid": "its readings are no numbers",
+    "range": "its readings are at or beyond the ends of its range",
+    "stuck": "it repeats one number for longer than its noise allows",
+}
+
+
+def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
+    """Return between which values a total channel, a static pressure, Pa, and a temperature, K, is a measurement."""
+    (a, b), (c, d), (e, f) = noise.total_range, noise.static_range, noise.temperature_range
+    if noise.differential:
+        a, b = a + ZERO, b + ZERO
+    return (
+        (max(a, LEAST_PRESSURE), min(b, MOST_PRESSURE)),
+        (max(c, LEAST_PRESSURE), min(d, MOST_PRESSURE)),
+        (max(e, LEAST_TEMPERATURE), min(f, MOST_TEMPERATURE)),
+    )
+
+
+def rows_allowed(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return, for the total and the static sensor, how long a row of one number may be, and its p (`repeats`)."""
+    total = alike(noise.total_sd, noise.total_step, noise.total_lag, noise.head_rate)
+    static = alike(noise.static_sd, noise.static_step, noise.static_lag, noise.head_rate)
+    return (longest_row(total), total), (longest_row(static), static)
+
+
+def pause(noise: NoiseModel) -> float:
+    """Return how long a sensor of the head may be silent, s."""
+    return max(SILENT, PERIODS / noise.head_rate)
+
+
+class SensorCheck:
+    """One sensor: when it was heard last, and what of.
+
+    Parameters
+    ----------
+    bounds : (low, high)
+        Between which a reading is a measurement; the ends are not.
+    pause : float
+        How long it may be silent, s.
+    row : float
+        How often it may repeat a number; infinity: repetition says nothing.
+    """
+
+    __slots__ = ("_came", "_first", "_good", "_high", "_last", "_low", "_nan", "_pause", "_row", "_same")
+
+    def __init__(self, bounds: tuple[float, float], pause: float, row: float = inf) -> None:
+        (self._low, self._high), self._pause, self._row = bounds, pause, row
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self._first, self._came, self._good = inf, -inf, -inf
+        self._last, self._same, self._nan = nan, 0, False
+
+    def add(self, t: float, reading: float, new: bool) -> None:
+        """Take a row of the head: its time, s, the value, and whether that is of a new conversion."""
+        if self._first == inf:
+            self._first = t
+        if not new:
+            return
+        self._came = t
+        if self._low < reading < self._high:
+            self._good = t
+            self._same = self._same + 1 if reading == self._last else 0
+            self._last = reading
+        else:
+            self._nan = not isfinite(reading)
+
+    def wrong(self, t: float) -> str:
+        """Return what is wrong with it at `t`, s; "" for nothing, or for too little time to tell."""
+        since = t - self._pause
+        if self._first > since:
+            return ""
+        if self._came < since:
+            return "silent"
+        if self._good < since:
+            return "invalid" if self._nan else "range"
+        return "stuck" if self._same >= self._row else ""
+
+
+class RailCheck:
+    """The head's three sensors and the pair's difference.
+
+    Parameters
+    ----------
+    noise : NoiseModel
+        What is believed of them.
+    tare_end : float
+        Until when the head is under its cover, s; −inf without one.
+    """
+
+    __slots__ = ("_count", "_first", "_noise", "_static_end", "_sum", "_tare_end", "_total_end", "sensors")
+
+    def __init__(self, noise: NoiseModel, tare_end: float) -> None:
+        self._noise, self._tare_end = noise, tare_end
+        total, static, warmth = limits(noise)
+        (total_row, _), (static_row, _) = rows_allowed(noise)
+        silent = pause(noise)
+        self.sensors = {
+            "total": SensorCheck(total, silent, total_row),
+            "static": SensorCheck(static, silent, static_row),
+            "thermometer": SensorCheck(warmth, silent),
+        }
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew."""
+        for sensor in self.sensors.values():
+            sensor.forget()
+        self._first = inf
+        self._total_end = self._static_end = -inf
+        self._sum, self._count = 0.0, 0
+
+    def add(
+        self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
+    ) -> None:
+        """Take a row of the head, its total channel (`difference`) in the place of the total pressure."""
+        if self._first == inf:
+            self._first = t
+        total, static, warmth = self.sensors.values()
+        total.add(t, p_total, t_total > self._total_end)
+        static.add(t, p_static, t_static > self._static_end)
+        warmth.add(t, temperature, temperature == temperature or t_static > self._static_end)
+        self._total_end = max(self._total_end, t_total)
+        self._static_end = max(self._static_end, t_static)
+        difference = p_total - (ZERO if self._noise.differential else p_static)
+        if t <= self._tare_end and -inf < difference < inf:
+            self._sum += difference
+            self._count += 1
+
+    def decided(self, t: float) -> bool:
+        """Whether enough has been read by `t`, s, and the tare is over."""
+        return t > self._tare_end and t - self._first >= SETTLED
+
+    def broken(self, t: float) -> dict[str, str]:
+        """Return what is wrong with which sensor at `t`, s."""
+        return {name: wrong for name, sensor in self.sensors.items() if (wrong := sensor.wrong(t))}
+
+    def doubts(self, t: float) -> tuple[str, ...]:
+        """Return the reasons why the head is not ready at `t`, s; see `Estimator.doubts`."""
+        broken = self.broken(t)
+        reasons = [f"{_named(name)}: {WORDS[wrong]}" for name, wrong in broken.items()]
+        if not broken and (off := self._apart()):
+            reasons.append(f"both ports: under the cover they differ by {off:.0f} Pa, beyond what the parts allow")
+        return tuple(reasons)
+
+    def _apart(self) -> float:
+        """By how much the pair differs under the cover, Pa, if its descriptions do not allow that; else 0."""
+        noise, n = self._noise, self._count
+        if not n or not noise.difference_sd > 0.0:
+            return 0.0
+        mean = self._sum / n
+        sd = hypot(noise.difference_sd, hypot(noise.total_sd, 0.0 if noise.differential else noise.static_sd) / sqrt(n))
+        return mean if abs(mean) > max(FAR * sd, LEAST_OFFSET) else 0.0
+
+
+def _named(channel: str) -> str:
+    return channel if channel == "thermometer" else f"{channel} port"
