@@ -712,11 +712,8 @@ class AidedFilter(Estimator):
             base = self._difference.static
             if self.ports.static.shut:  # to both sensors
                 reading, base = reading + base, 0.0
-            energy.read_relative(base > 0.0)
-        settled = self._onset.settled
-        if not settled and not self._onset.settle(
-            energy, self.time, reading - self._zero + base, base or energy.p, air
-        ):
+        onset, static = self._onset, base or energy.p
+        if not onset.settled and not onset.settle(energy, self.time, reading - self._zero + base, air, static):
             return nan
         pushed = self._pushed(end)
         variance = self._total_variance + pushed * pushed * self._push_variance
@@ -726,7 +723,7 @@ class AidedFilter(Estimator):
             variance += slope * slope * air.gust * abs(energy.v) * behind
         tared = reading - self._zero - self._noise.acceleration * pushed
         if self.ports.total.faulty:
-            self.ports.hear_total(self._t, energy, end, read, (tared + base, base or energy.p), variance)
+            self.ports.hear_total(self._t, energy, end, read, (tared + base, static), variance)
             return nan
         nis = energy.total(tared, variance, pushed, air.heat)
         if energy.taken:

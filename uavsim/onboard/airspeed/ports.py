@@ -183,6 +183,7 @@ class Ports:
 
     def _flag_static(self, t: float, energy: EnergyFilter, kind: str) -> None:
         self.static.flag(kind, energy, t, self._air.density, self.total.port.frozen.lost)
+        energy.read_relative(self._noise.differential and not self.static.shut)
         self.misses = 0
         self.total.port.restart()
         self.tell(t, "airspeed_fault", "static", kind)
@@ -228,4 +229,5 @@ class Ports:
         """Compare a flagged static port in the same way: its reading of an instant, s, and how far off it is, Pa."""
         if self.static.coast(at, reading, difference, energy.pp + self._static_variance):
             energy.widen_static(difference * difference)
+            energy.read_relative(self._noise.differential)
             self.tell(t, "airspeed_recovered", "static")
