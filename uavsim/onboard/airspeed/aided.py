@@ -636,7 +636,7 @@ class AidedFilter(Estimator):
             self._fresh = self._t
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, self._lift
-        ports.seen_total = p_total, tared + p_static if self._differential else tared, nis_total
+        ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
         return nis_total, nis_static
 
     def _advance(self, to: float) -> None:
@@ -734,7 +734,7 @@ class AidedFilter(Estimator):
         if energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
-            self.ports.seen_total = read, tared + base, nis
+            self.ports.seen_total = read, tared + (energy.p if base else 0.0), nis
         return nis
 
     def _pushed(self, end: float) -> float:

@@ -22,6 +22,9 @@ from uavsim.onboard.airspeed.rail import rows_allowed
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
 
+# share of a static reading's variance that is left in the filter's own static pressure in steady flight. By hand: a
+# twentieth is what the filter claims at 100 Hz and 3.7 Pa; what is left is no white noise
+SMOOTHED = 0.1
 MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go, so that memory is constant
 # static pressures in a row beyond the gate: no longer spikes, but a port or a filter that is wrong. By hand, as
 # `stamps.AGREED`; docs/airspeed.md, "What no reading can do", holds the check
@@ -85,9 +88,11 @@ class Ports:
         white = noise.accelerometer_sd**2 / noise.accelerometer_rate
         offset, lift_offset = noise.accelerometer_offset_sd, noise.lift_offset_sd
         total, static = rows_allowed(noise)
-        # in the row of a head with a differential sensor the static sensor's noise is in the total pressure, too
-        variance = self._total_variance + (self._static_variance if noise.differential else 0.0)
-        self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white)
+        # a total pressure of a differential sensor is relative to the filter's static one, or to the static reading
+        variance, row_variance = self._total_variance, self._total_variance
+        if noise.differential:
+            variance, row_variance = variance + SMOOTHED * self._static_variance, variance + self._static_variance
+        self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white, row_variance)
         self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset)
         self._lift, self.misses, self.torn = GRAVITY, 0, False
         self.forget_seen()

@@ -95,6 +95,8 @@ class TotalWatch:
         Offset of f_x, m/s².
     force_density : float
         By how much noise of f_x widens its integral, m²/s³.
+    row_variance : float or None
+        Of what `coast` takes, Pa²; None: `variance`.
 
     Attributes
     ----------
@@ -118,6 +120,7 @@ class TotalWatch:
         alike: float = 0.0,
         offset_sd: float = 0.0,
         force_density: float = 0.0,
+        row_variance: float | None = None,
     ) -> None:
         self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
@@ -125,6 +128,8 @@ class TotalWatch:
         self._jumped, self._jumped_at = 0.0, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
+        if row_variance is not None:
+            self.port.back = Readmission(row_variance * apart(alike), walk, row)
         self.faulty = self._astray = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
