@@ -33,6 +33,7 @@ from uavsim.onboard.flow_through import FlowThrough
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
 from uavsim.onboard.rail_offset import RailOffset
+from uavsim.onboard.readiness import Readiness
 from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import STEP_RATES, Plant, Run
@@ -134,7 +135,8 @@ class Onboard:
             airspeed.build(believed_air(scenario), noise, tare_window(scenario, release_time)),
             rate,
             scenario.launch_axis,
-            RailOffset(noise),
+            rail := RailOffset(noise),
+            Readiness(noise, rail),
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
         flow = believed_flow(scenario)

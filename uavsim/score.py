@@ -381,6 +381,7 @@ def _flight(flight: Judged) -> dict[str, Any]:
     altitude = flight.truth("altitude")[time >= (np.inf if exit_time is None else exit_time)]
     altitude = altitude[np.isfinite(altitude)]
     return {
+        "ready": _ready(flight),
         "rail_exit_time": exit_time,
         "rail_exit_speed": None if exit_time is None else _number(np.interp(exit_time, time, speed)),
         "wing_start_time": flight.wing_start_time,
@@ -391,6 +392,12 @@ def _flight(flight: Judged) -> dict[str, Any]:
         "rail_exit_altitude": _number(altitude[0]) if altitude.size else None,
         "lowest_altitude_after_exit": _number(altitude.min()) if altitude.size else None,
     }
+
+
+def _ready(flight: Judged) -> bool | None:
+    """Whether the flight computer called itself ready when the latch let go; None if it had said nothing."""
+    said = [e["event"] for e in flight.events if e["event"] in ("ready", "not_ready") and e["t"] <= flight.release_time]
+    return said[-1] == "ready" if said else None
 
 
 def _requirement(result: dict[str, Any], wanted: "Requirement") -> dict[str, Any]:

@@ -20,6 +20,7 @@ AIRSPEED = (
 PRESSURE = ("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean")
 PRESSURES = ("total", "static")
 FLIGHT = (
+    "ready",
     *("rail_exit_time", "rail_exit_speed", "wing_start_time", "wing_out_time"),
     *("cruise_airspeed", "cruise_airspeed_sd", "duration", "rail_exit_altitude", "lowest_altitude_after_exit"),
 )

@@ -42,6 +42,7 @@ from uavsim import airdata
 from uavsim.onboard.interface import Commands, Detector, Estimate, Estimator, News
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_FORCE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.rail_offset import RailOffset
+from uavsim.onboard.readiness import Readiness
 from uavsim.onboard.stamps import Stamps, jump
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
@@ -144,6 +145,8 @@ class FlightComputer:
         Signed body axis that points along the launch; what is said of f_x holds for it.
     rail
         Finds the accelerometer's offset while the aircraft waits; None: nothing is taken off the readings.
+    readiness
+        Judges on the rail whether the sensors are fit for a launch; None: nothing is said of that.
 
     Attributes
     ----------
@@ -163,6 +166,7 @@ class FlightComputer:
         accelerometer_rate: float,
         axis: str = "+x",
         rail: RailOffset | None = None,
+        readiness: Readiness | None = None,
     ) -> None:
         self.settings = settings
         self.detector = detector
@@ -172,7 +176,9 @@ class FlightComputer:
         self.events: list[dict[str, Any]] = []
         self._feel = estimator.accelerometer if estimator.aided else None
         self._news: News = estimator.news
-        self._rail = rail
+        self._rail, self._readiness = rail, readiness
+        self._doubts: tuple[str, ...] | None = None
+        self._begun = nan
         self._offset = (0.0, 0.0, 0.0)
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
         self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
@@ -200,7 +206,7 @@ class FlightComputer:
 
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take one reading of specific force, m/s^2, body axes."""
-        state = self.state
+        state, raw = self.state, fx
         if self._rail is not None:
             if state == "waiting":
                 self._rest(t, fx, fy, fz)
@@ -215,6 +221,11 @@ class FlightComputer:
                 return
             self._step_of_the_clock(t - self._t)
         self._t = t
+        readiness = self._readiness
+        if readiness is not None and state == "waiting":
+            readiness.add(t, raw)
+            if t >= readiness.due:
+                self._look(t)
         along = fx if self._axis is None else self._axis[1] * (fx, fy, fz)[self._axis[0]]
         if state == "waiting":
             self._average_rail(t, along)
@@ -251,7 +262,24 @@ class FlightComputer:
             self._reference_pressure = estimate[5]
         if self.state == "flying":
             self._hold(estimate, temperature)
+        elif self.state == "waiting" and self._readiness is not None and t >= self._readiness.due:
+            self._look(t)
         return estimate
+
+    def _look(self, t: float) -> None:
+        """Note whether all is ready for a launch, and why not, whenever that changes."""
+        readiness = self._readiness
+        assert readiness is not None
+        if self._begun != self._begun:
+            self._begun = t
+        reasons = readiness.look(t, self.estimator.doubts(t), self._begun)
+        if reasons is None or _alike(reasons, self._doubts):
+            return
+        self._doubts = reasons
+        if reasons:
+            self._note(t, "not_ready", reasons="; ".join(reasons))
+        else:
+            self._note(t, "ready")
 
     def _tidy(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take the reading after one of the head: there is time for what the estimator has put off."""
@@ -347,6 +375,9 @@ class FlightComputer:
             self.state, self._last_estimate = "flying", t
         else:
             self._note(t, "rearmed")
+            if self._readiness is not None:
+                self._readiness.forget()
+            self._begun, self._doubts = nan, None
             self.detector.reset()
             self._block_start, self._block_sum, self._block_count = None, 0.0, 0
             if self._rail is not None:
@@ -435,6 +466,13 @@ class FlightComputer:
         self.events.append({"t": t, "event": event, **details})
         if len(self.events) > MOST_EVENTS:
             del self.events[0]
+
+
+def _alike(reasons: tuple[str, ...], others: tuple[str, ...] | None) -> bool:
+    """Whether two rows of reasons name the same channels: numbers in them may change."""
+    if others is None:
+        return False
+    return [reason.split(":")[0] for reason in reasons] == [reason.split(":")[0] for reason in others]
 
 
 def _within(value: float, low: float, high: float) -> float:

@@ -105,6 +105,13 @@ class Estimator:
     def launched(self, t: float) -> None:
         """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
 
+    def doubts(self, t: float) -> tuple[str, ...] | None:
+        """Say why it is not ready to be launched at `t`, s, in a sentence each: "total port: no reading comes".
+
+        Nothing, (), is ready; None: it is too early to say. It is asked on the rail, some times a second.
+        """
+        return ()
+
     def rested(self, offset: tuple[float, float, float], sd: tuple[float, float, float]) -> None:
         """Be told of the accelerometer's offset as it was found on the rail, m/s², body axes, before `launched`.
 

@@ -109,6 +109,14 @@ class RailOffset:
     def _clear(self) -> None:
         self._sums, self._squares, self._count = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0
 
+    @property
+    def remainder(self) -> Triple | None:
+        """What the last block in which the force stood still is off by, m/s², body axes; None without one."""
+        if self._before is None or self._rail is None:
+            return None
+        (x, y, z), (ex, ey, ez) = self._before[0], self._rail[0]
+        return x - ex, y - ey, z - ez
+
     def take_off(self, fx: float, fy: float, fz: float) -> Triple:
         """Return a reading without the offset as it has been found so far."""
         x, y, z = self.offset

@@ -43,6 +43,7 @@ from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.difference import Difference
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
+from uavsim.onboard.airspeed.first_climb import FirstClimb
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
@@ -151,65 +152,13 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air",
-        "_apart",
-        "_base",
-        "_difference",
-        "_differential",
-        "_fastest",
-        "_flight_force",
-        "_force",
-        "_fresh",
-        "_gained",
-        "_gated",
-        "_heard",
-        "_lift",
-        "_longest",
-        "_muted",
-        "_noise",
-        "_on_rail",
-        "_onset",
-        "_pause",
-        "_plain",
-        "_push",
-        "_push_end",
-        "_push_variance",
-        "_rail",
-        "_read",
-        "_rest",
-        "_rest_sd",
-        "_rows",
-        "_scale_share",
-        "_scale_variance",
-        "_settings",
-        "_stamps",
-        "_static_age",
-        "_static_ends",
-        "_static_spikes",
-        "_static_variance",
-        "_steady_from",
-        "_steps",
-        "_stroke",
-        "_sudden",
-        "_t",
-        "_tare",
-        "_tare_end",
-        "_temperature_share",
-        "_total_age",
-        "_total_ends",
-        "_total_spikes",
-        "_total_variance",
-        "_u",
-        "_unfolding",
-        "_w",
-        "_waiting",
-        "_warmth",
-        "_zero",
-        "energy",
-        "flying",
-        "news",
-        "ports",
-        "time",
+        "_air", "_apart", "_base", "_difference", "_differential", "_fastest", "_first_climb", "_flight_force",
+        "_force", "_fresh", "_gained", "_gated", "_heard", "_lift", "_longest", "_muted", "_noise", "_on_rail",
+        "_onset", "_pause", "_plain", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd",
+        "_rows", "_scale_share", "_scale_variance", "_settings", "_stamps", "_static_age", "_static_ends",
+        "_static_spikes", "_static_variance", "_steady_from", "_steps", "_stroke", "_sudden", "_t", "_tare",
+        "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance", "_u",
+        "_unfolding", "_w", "_waiting", "_warmth", "_zero", "energy", "flying", "news", "ports", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -241,7 +190,7 @@ class AidedFilter(Estimator):
         total, static, self._warmth = limits(noise)
         self._total_spikes, self._static_spikes = Spikes(total), Spikes(static)
         self._rail, self._pause = RailCheck(noise, self._tare_end), pause(noise)
-        self._stroke, self._push_end = StrokeTest(), PushEnd()
+        self._stroke, self._push_end, self._first_climb = StrokeTest(), PushEnd(), FirstClimb()
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
         self._heard, self._fresh, self._muted = [-inf, -inf, -inf], -inf, [False, False]
         self._gated = inf  # s, from which on pressures alone are valid again after the filter has ended
@@ -280,7 +229,11 @@ class AidedFilter(Estimator):
         self._read = t
         if self._steps != self._gained.steps:
             self._steps = self._gained.steps
-            self._lose_time(t)
+            if self.flying and self._muted[0] and -self._longest <= t - self._gained.newest <= self._longest:
+                self._u, self._w = self._gained.at(self.time)  # it was silent, and the clocks agree as before
+                self.ports.torn = True
+            else:
+                self._lose_time(t)
         if self._apart and -self._longest <= t - self._gained.newest <= self._longest:
             self._begin_in_flight(t)
         if self.flying:
@@ -388,6 +341,7 @@ class AidedFilter(Estimator):
         self._gated = inf
         self._start(start, t + PATIENCE, inf)
         self._begin_stroke(t, start, broken)
+        self._begin_first_climb(start)
         try:
             for row in self._rows:
                 if row[4] - self._total_age > start or row[5] - self._static_age > start:
@@ -418,7 +372,8 @@ class AidedFilter(Estimator):
             onset.wind = 0.0
             energy.restart(0.0, self._settings.wind_sd**2)
         for channel, kind in broken.items():
-            self._muted[1] = self._muted[1] or channel == "thermometer"
+            if channel == "thermometer":
+                self._muted[1], self._heard[2] = True, -inf
             self.ports.dead_at_rest(t, energy, channel, kind, (0.0, self._settings.wind_sd**2))
         self._stroke.begin(
             () if broken else self._channels(),
@@ -434,6 +389,14 @@ class AidedFilter(Estimator):
         read = Difference(self._differential).read
         return ((row[0], read(row[1], row[2]), *row[2:]) for row in self._rows)
 
+    def _climbed(self, reading: float, before: float) -> None:
+        """Judge by a static pressure, Pa, whether its port lives; the last one was of a time `before`, s."""
+        test, energy, density = self._first_climb, self.energy, self._air.density
+        if self.ports.total.faulty or self.ports.static.faulty:
+            test.open, test.hidden = False, 0.0
+        elif test.add(reading, self._t - before, energy.v, self._u, density, self._push_end.lasts):
+            self.ports.never_moved(self._t, energy, test.rest, test.lost, density)
+
     def _not_risen(self, kind: str) -> None:
         """Flag the total port in the stroke. What it has told of the wind is void, and V is what the force gave."""
         begun, _, w = self._base
@@ -446,6 +409,13 @@ class AidedFilter(Estimator):
         """Return what the force has given since the launch at the filter's instant, m/s, that at rest taken off."""
         begun, u, _ = self._base
         return self._u - u - self._rest.mean * (self.time - begun)
+
+    def _begin_first_climb(self, start: float) -> None:
+        """Begin to doubt the static port until it has left the rail's pressure."""
+        statics = sorted(row[2] for row in self._rows if row[5] <= start and row[2] == row[2])
+        rail = self._noise.rail_elevation
+        if statics:
+            self._first_climb.begin(statics[len(statics) // 2], self._noise.static_sd, 0.0 if rail is None else rail)
 
     def _begin(self, start: float) -> EnergyFilter:
         """Make the filter of a launch, which starts on the rail at an instant, s."""
@@ -519,7 +489,8 @@ class AidedFilter(Estimator):
         self.ports.begin()
         self._push_end.forget(steady_from)
         self._heard, self._fresh, self._muted = [start, start, start], start, [False, False]
-        self._stroke.open = False
+        self._stroke.open = self._first_climb.open = False
+        self._first_climb.hidden = 0.0
         self._total_ends.forget()
         self._static_ends.forget()
 
@@ -553,6 +524,8 @@ class AidedFilter(Estimator):
         if new_total > 0:
             heard[0] = t
         if new_static > 0:
+            if self._first_climb.open:
+                self._climbed(p_static, heard[1])
             heard[1] = t
         late = t - self._pause
         if self._gained.newest < late or min(heard) < late or any(self._muted):
@@ -763,6 +736,10 @@ class AidedFilter(Estimator):
             variance += self._unfolding.variance(self.time, t)
         if speed < 0.0:  # noqa: PLR1730
             speed = 0.0
+        hidden = self._first_climb.hidden
+        if hidden > 0.0:
+            hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
+            variance += hidden * hidden
         share, scale = self._temperature_share * speed / air.temperature, self._scale_share * speed
         sd = sqrt(max(variance, 0.0) + share * share + scale * scale)
         total = isentropic(speed, static, air.heat)

@@ -45,6 +45,17 @@ class GuardedEstimator(Estimator):
         """Whether it has an `accelerometer` of its own."""
         return self._aided
 
+    def doubts(self, t: float) -> tuple[str, ...] | None:
+        """Say why it is not ready; an estimator without `doubts` is."""
+        told = getattr(self._estimator, "doubts", None)
+        if told is None:
+            return ()
+        with blamed(self._part, t):
+            reasons = told(t)
+        if reasons is None or (isinstance(reasons, tuple) and all(isinstance(reason, str) for reason in reasons)):
+            return reasons
+        raise PartError(f"{self._part} doubts {shown(reasons)} at {t:.4f} s; it must be None or a tuple of sentences")
+
     def accelerometer(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Take a reading of specific force."""
         self._t = t

@@ -34,6 +34,11 @@ class PushEnd:
         self._mean = self._slow = 0.0
         self._quiet, self.steady_from = inf, steady_from
 
+    @property
+    def lasts(self) -> bool:
+        """Whether the force is still one of a push."""
+        return self._quiet == inf and self.steady_from == inf
+
     def add(self, t: float, force: float, dt: float) -> None:
         """Take the mean of f_x less that at rest, m/s², over a time that ended at `t`, s."""
         self._mean += (force - self._mean) * (dt / MEAN if dt < MEAN else 1.0)

@@ -361,6 +361,22 @@ class StaticWatch:
             unseen=UNSEEN,
         )
 
+    def flag_at_rest(
+        self, energy: EnergyFilter, t: float, held: tuple[float, float], lost: float, density: float
+    ) -> None:
+        """Flag a port that was shut before the launch: half of what V has lost is the height that it hides."""
+        self.faulty = self.shut = True
+        self._back.flag(t, *held)
+        hidden = -0.5 * density * max(energy.v, 1.0) * lost
+        energy.leave_static(
+            static=(held[0] - hidden, hidden * hidden),
+            slope=(energy.s, 1.0),
+            bias=(0.0, BIAS_SD * BIAS_SD),
+            tied=0.0,
+            density=density,
+            unseen=UNSEEN,
+        )
+
     def coast(self, t: float, reading: float, difference: float, spread: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
         if not self._back.hear(t, reading, reading, difference, spread):
