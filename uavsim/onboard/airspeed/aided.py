@@ -680,16 +680,16 @@ class AidedFilter(Estimator):
             if kind:
                 self._not_risen(kind)
                 return nan
-        read, base = reading, 0.0  # as it came; what the pressure is read relative to, Pa
+        read, base, each = reading, 0.0, self._total_variance  # as it came; what it is relative to, Pa
         if self._differential:
             base = self._difference.static
             if self.ports.static.shut:  # to both sensors
-                reading, base = reading + base, 0.0
+                reading, base, each = reading + base, 0.0, each + self._static_variance
         onset, static = self._onset, base or energy.p
         if not onset.settled and not onset.settle(energy, self.time, reading - self._zero + base, air, static):
             return nan
         pushed = self._pushed(end)
-        variance = self._total_variance + pushed * pushed * self._push_variance
+        variance = each + pushed * pushed * self._push_variance
         if behind > 0.0:  # the filter has taken a later one: as if V had changed by the force and the gust alone
             slope = air.density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
