@@ -15,7 +15,7 @@ With u = √(1 + 8 Δp_s/Δp_c) that is Δp_c (u² − 1)/8 + a (u − 1) = Δp,
 
 as it counts molecules (Sensirion's data on the SDP3x: effective pressure = reading · 966 hPa/p; their application note
 "Compensation of pressure drop in a hose" has the flow's law, with ṁ_c = 4.79e-7 kg/s and Δp_c = 59.33 Pa as PX4 uses
-it in `airspeed.cpp`). At 20 °C, 600 Pa and 966 hPa two tubes of 0.3 m and 2 mm lose 8 %, 4 % of the airspeed.
+it in `airspeed.cpp`). Two tubes of 0.3 m and 2 mm lose 7 % of 600 Pa, 3.5 % of the airspeed, and of 1.5 mm 20 %.
 
 What is shut behind a thermal part does not keep its pressure: air passes the part until both sides are equal, through
 some 10⁻⁸ kg/(s Pa) into a cubic centimetre, which takes milliseconds. So a shut port reads Δp = 0, not what it held.

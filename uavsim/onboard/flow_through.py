@@ -61,12 +61,12 @@ class FlowThrough:
     def row(self, reading: AirReading) -> AirReading:
         """Return a row of the head with its total pressure corrected."""
         t, p_total, p_static, temperature, t_total, t_static = reading
-        if p_static == p_static:
-            self._static = p_static
         return t, self.total(p_total, p_static, temperature), p_static, temperature, t_total, t_static
 
     def total(self, p_total: float, p_static: float, temperature: float) -> float:
         """Return the total pressure, Pa, of what was read, Pa and K; NaN before there was a static pressure."""
+        if p_static == p_static:
+            self._static = p_static
         held = self._pressure
         if LEAST_PRESSURE <= p_static <= MOST_PRESSURE and not abs(p_static - held) <= MOVED:
             held = p_static
