@@ -22,7 +22,7 @@ from weakref import proxy
 
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
-from uavsim import __version__
+from uavsim import __version__, part_range
 from uavsim.beliefs import believed_air, believed_flow, believed_noise, calibrated
 from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
@@ -306,7 +306,7 @@ class Cosimulation:
     @property
     def remarks(self) -> list[str]:
         """What of plant and air deserves a word, a line each; at the end there may be more of it."""
-        said = list(getattr(self.plant, "remarks", ()))
+        said = [*part_range.remark(self.scenario), *getattr(self.plant, "remarks", ())]
         if not self.scenario.plant.chosen.flies and moves(self.scenario.environment):
             said.append(
                 f"plant.kind = {self.scenario.plant.kind!r} is a rig: wind, turbulence and gusts do not reach it"
