@@ -1,8 +1,8 @@
 """At which airspeed the readings of a head end, in the air of the field.
 
-An absolute total sensor ends where the total pressure is its greatest, p_t = p (1 + M²/5)^3.5 (ISO 2533), a differential
-one where the difference p_t − p is. A thermal part counts molecules, so that its end in Pa is that at its calibration
-times p_cal/p. Beyond it there is no airspeed but that of the integral of the specific force.
+An absolute total sensor ends where the total pressure is its greatest, p_t = p (1 + M²/5)^3.5 (ISO 2533), a
+differential one where the difference p_t − p is. A thermal part counts molecules, so that its end in Pa is that at its
+calibration times p_cal/p. Beyond it there is no airspeed but that of the integral of the specific force.
 """
 
 from math import inf, isfinite, sqrt

@@ -7,9 +7,8 @@ V_i is the speed less the gust G, V = V_i + G; c is 2m/(ρ S C_Lα), some metres
 axis is the path. It is all of numpy, and a flight of 30 s costs a tenth of a second in the filter.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import pi
 
 import numpy as np
 
@@ -150,9 +149,8 @@ def fly(flight: Flight, seed: int) -> Readings:
     v = np.maximum(inertial + flight.wind, 5.0)
     along = np.gradient(inertial, dt) + GRAVITY * np.sin(gamma)
     along = np.where(tau < 0.0, GRAVITY * np.sin(np.radians(flight.elevation_deg)), along)
-    lift = np.where(
-        flying, (GRAVITY * np.cos(gamma) + v * np.gradient(gamma, dt)) / np.cos(phi), GRAVITY * np.cos(gamma)
-    )
+    pull = GRAVITY * np.cos(gamma) + v * np.gradient(gamma, dt)
+    lift = np.where(flying, pull / np.cos(phi), GRAVITY * np.cos(gamma))
     lift = np.clip(lift, -60.0, 60.0)
     alpha = np.where(flying, flight.alpha0 + flight.turn * lift / v**2, 0.0)
     fx = along * np.cos(alpha) + lift * np.sin(alpha)
@@ -186,12 +184,7 @@ def fly(flight: Flight, seed: int) -> Readings:
     return Readings(force, air, t, airspeed, height, flight)
 
 
-def after(start: float) -> slice | Callable[[np.ndarray], np.ndarray]:
-    """Rows of the head from `start`, s after the launch, on."""
-    return lambda told: told >= LAUNCH + start
-
-
-# -- what breaks, on the readings ---------------------------------------------------------------------------------------
+# -- what breaks, on the readings -------------------------------------------------------------------------------------
 
 
 def spoil(readings: Readings, column: int, start: float, how: str, seed: int = 0, size: float = 0.0) -> Readings:
@@ -237,7 +230,7 @@ def without_force(readings: Readings, start: float, stop: float) -> Readings:
     return replace(readings, force=readings.force[(t < start) | (t >= stop)])
 
 
-# -- through the filter -------------------------------------------------------------------------------------------------
+# -- through the filter -----------------------------------------------------------------------------------------------
 
 
 @dataclass
@@ -279,7 +272,7 @@ def run(
             static_step=flight.static_step,
         )
     estimator = AidedFilter(settings, noise, tare)
-    feel, tidy, out = estimator.accelerometer, False, []
+    tidy, out = False, []
     launched = opened = False
     forces, k = readings.force.tolist(), 0
     news: list = []
@@ -309,14 +302,7 @@ def run(
     return Flown(np.array(out), news, estimator)
 
 
-# -- healthy manoeuvres -------------------------------------------------------------------------------------------------
-
-CRUISE = ((0.0, 0.0), (0.3, 26.0), (4.0, 32.0))
-
-
-def corners(*pairs: tuple[float, float]) -> Course:
-    """A course after the climb-out."""
-    return pairs
+# -- healthy manoeuvres -----------------------------------------------------------------------------------------------
 
 
 def boost(top: float, g: float = 8.0) -> tuple[Course, float]:
@@ -331,7 +317,6 @@ def steady(v: float, **more: object) -> Flight:
     return Flight(speed=course, push=lasts, path_deg=((0.0, 12.0), (lasts, 12.0), (lasts + 1.5, 0.0)), **more)  # type: ignore[arg-type]
 
 
-LEVEL = ((0.0, 12.0), (0.3, 12.0), (1.0, 4.0), (4.0, 3.0), (6.0, 0.0))
 MANOEUVRES: dict[str, Flight] = {
     "cruise": Flight(duration=30.0),
     "gusty": Flight(duration=30.0, gust_sd=1.0),
@@ -410,18 +395,3 @@ def believed(flight: Flight) -> EstimatorSettings:
     if flight.gust_sd > 0.2:
         return replace(SETTINGS, aided=replace(SETTINGS.aided, gust_sd=flight.gust_sd, gust_length=flight.gust_length))
     return SETTINGS
-
-
-__all__ = [
-    "MANOEUVRES",
-    "Flight",
-    "Flown",
-    "Readings",
-    "believed",
-    "fly",
-    "pi",
-    "run",
-    "spoil",
-    "steady",
-    "without_force",
-]

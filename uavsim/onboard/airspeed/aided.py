@@ -58,6 +58,7 @@ from uavsim.onboard.airspeed.rail import RailCheck, limits, pause
 from uavsim.onboard.airspeed.rest_force import RestForce
 from uavsim.onboard.airspeed.rest_wind import Row
 from uavsim.onboard.airspeed.settings import EstimatorSettings
+from uavsim.onboard.airspeed.shock import Shock
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
 from uavsim.onboard.airspeed.stroke import StrokeTest, most_wind
@@ -107,8 +108,8 @@ ALONE = 0.02
 # -- what is claimed ---------------------------------------------------------------------------------------------------
 
 VALID = 8.0  # σ_V from which on an airspeed is valid: 2 V* of the pressures' law (`paper`)
-# m/s, σ_V up to which an airspeed that coasts is valid, whatever the reason: a flag, silence, NaN, a range's end; beyond it the airspeed hold falls back to a safe
-# throttle. By hand; docs/faults.md says how long that lasts
+# m/s, σ_V up to which an airspeed that coasts is valid, whatever the reason, a flag, silence, NaN, a range's end;
+# beyond it the airspeed hold falls back to a safe throttle. By hand; docs/faults.md says how long that lasts
 COASTED = 2.0
 FRESH = 0.2  # s since a total pressure was taken, up to which the airspeed does not coast. By hand
 MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
@@ -155,7 +156,7 @@ class AidedFilter(Estimator):
         "_air", "_apart", "_base", "_difference", "_differential", "_fastest", "_first_climb", "_flight_force",
         "_force", "_fresh", "_gained", "_gated", "_heard", "_lift", "_longest", "_muted", "_noise", "_on_rail",
         "_onset", "_pause", "_plain", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd",
-        "_rows", "_scale_share", "_scale_variance", "_settings", "_stamps", "_static_age", "_static_ends",
+        "_rows", "_scale_share", "_scale_variance", "_settings", "_shock", "_stamps", "_static_age", "_static_ends",
         "_static_spikes", "_static_variance", "_steady_from", "_steps", "_stroke", "_sudden", "_t", "_tare",
         "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance", "_u",
         "_unfolding", "_w", "_waiting", "_warmth", "_zero", "energy", "flying", "news", "ports", "time",
@@ -191,6 +192,7 @@ class AidedFilter(Estimator):
         self._total_spikes, self._static_spikes = Spikes(total), Spikes(static)
         self._rail, self._pause = RailCheck(noise, self._tare_end), pause(noise)
         self._stroke, self._push_end, self._first_climb = StrokeTest(), PushEnd(), FirstClimb()
+        self._shock = Shock(noise.accelerometer_sd / sqrt(max(1.0, noise.accelerometer_rate / noise.head_rate)))
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
         self._heard, self._fresh, self._muted = [-inf, -inf, -inf], -inf, [False, False]
         self._gated = inf  # s, from which on pressures alone are valid again after the filter has ended
@@ -403,7 +405,10 @@ class AidedFilter(Estimator):
         since, gained = self.time - begun, self._speed_since_launch()
         rest = self._rest_sd * since
         variance = self._settings.wind_sd**2 + self._w - w + rest * rest + self._scale_variance * gained * gained
-        self.ports.not_risen(self._t, self.energy, kind, self._total_spikes.last, (gained, variance))
+        held = self._total_spikes.last
+        if self._differential:
+            held += self._difference.static - self._difference.zero
+        self.ports.not_risen(self._t, self.energy, kind, held, (gained, variance))
 
     def _speed_since_launch(self) -> float:
         """Return what the force has given since the launch at the filter's instant, m/s, that at rest taken off."""
@@ -488,6 +493,7 @@ class AidedFilter(Estimator):
         self._static_spikes.forget()
         self.ports.begin()
         self._push_end.forget(steady_from)
+        self._shock.forget()
         self._heard, self._fresh, self._muted = [start, start, start], start, [False, False]
         self._stroke.open = self._first_climb.open = False
         self._first_climb.hidden = 0.0
@@ -587,6 +593,7 @@ class AidedFilter(Estimator):
     def _take_both(self, p_total: float, p_static: float, t_total: float, to: float, at: float) -> tuple[float, float]:
         """What `_advance`, `_take_static` and `_take_total` do, at once."""
         energy, density, dt = self.energy, self._air.density, to - self.time
+        self._feel_shock(to)
         if energy.kk > 0.0:
             self._push_variance = energy.know_push()
         gained, variance = self._go(to, dt)
@@ -611,6 +618,16 @@ class AidedFilter(Estimator):
         ports.seen_static = p_static, at, self._lift
         ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
         return nis_total, nis_static
+
+    def _feel_shock(self, to: float) -> None:
+        """Open b after a step of f_x; name the accelerometer where b has taken it up."""
+        shock, energy, ports = self._shock, self.energy, self.ports
+        size = shock.add(to, self._force, energy.b)
+        if size != 0.0:
+            energy.widen_bias(size * size)
+            ports.total.open_bias(self.time, size * size)
+        elif to > shock.due and shock.offset(energy.b, energy.bb):
+            ports.tell(self._t, "airspeed_fault", "accelerometer", "offset")
 
     def _advance(self, to: float) -> None:
         """Predict to a later time; an earlier one leaves the filter where it is."""
@@ -740,6 +757,7 @@ class AidedFilter(Estimator):
         if hidden > 0.0:
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
+        variance += self.ports.between
         share, scale = self._temperature_share * speed / air.temperature, self._scale_share * speed
         sd = sqrt(max(variance, 0.0) + share * share + scale * scale)
         total = isentropic(speed, static, air.heat)

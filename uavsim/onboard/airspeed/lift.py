@@ -18,20 +18,25 @@ DIRECTION_SD = 0.04  # rad, α₀: 2°, the wing's incidence and zero lift and t
 LASTS = 0.5  # s, that an error of c acts with one sign: the pull of a manoeuvre. By hand
 # s over which n − g is averaged; m/s² of it up to which flight is straight: a gust's, and the offset's. By hand
 PULLS, STRAIGHT = 0.3, 0.7
+# m/s², n − g of a gust, up to which f_x is taken as it is: so leaks are not hidden in gusts. A turn at 34° has it
+GUSTY = 2.0
 SLOWEST = 10.0  # m/s, below which no wing flies, and lift says nothing of the angle of attack
-LEVEL = GRAVITY * GRAVITY
 
 
 def pulled(lift: float, speed: float) -> tuple[float, float]:
     """Return Δ, m/s², and what it adds to the variance of V a second, m²/s³; of n, m/s², and V, m/s."""
+    change = lift - GRAVITY
+    if -GUSTY < change < GUSTY:
+        return 0.0, 0.0
+    change += -GUSTY if change > 0.0 else GUSTY
     v = speed if speed > SLOWEST else SLOWEST
-    more = (lift * lift - LEVEL) / (v * v)
-    doubt, tilt = TURN_SD * more, DIRECTION_SD * (lift - GRAVITY)
+    more = change * (change + 2.0 * GRAVITY) / (v * v)
+    doubt, tilt = TURN_SD * more, DIRECTION_SD * change
     return TURN * more, (doubt * doubt + tilt * tilt) * LASTS
 
 
 class Pull:
-    """A pull or a turn by the mean of n − g, and what it does to what f_x is off by.
+    """A pull or a turn by the mean of n − g, and what it does to V by α₀.
 
     Attributes
     ----------
@@ -47,9 +52,9 @@ class Pull:
         self.mean = self.size = 0.0
 
     def add(self, lift: float, dt: float) -> float:
-        """Take n, m/s², over a time, s; return by how much the variance of b grows meanwhile, (m/s²)²."""
+        """Take n, m/s², over a time, s; return what α₀ adds to the variance of V meanwhile, m²/s²."""
         self.mean += (lift - GRAVITY - self.mean) * (dt / PULLS if dt < PULLS else 1.0)
         size = (self.mean if self.mean > 0.0 else -self.mean) - STRAIGHT
         self.size = size = size if size > 0.0 else 0.0
         tilt = DIRECTION_SD * size
-        return tilt * tilt * dt / LASTS
+        return tilt * tilt * LASTS * dt

@@ -61,13 +61,28 @@ class Ports:
         A static pressure so: Pa, its instant, s, and the mean of −f_z since the one before, m/s².
     misses : int
         How many static pressures in a row were beyond the gate.
+    between : float
+        While nobody can tell whether the flagged total port or the accelerometer is wrong: the square of what lies
+        between the two airspeeds, m²/s², which is in the bar; else 0.
     torn : bool
         Whether readings of specific force have been missing since the ports were judged last.
     """
 
     __slots__ = (
-        "_aided", "_air", "_lift", "_noise", "_static_variance", "_total_variance", "misses", "news",
-        "seen_static", "seen_total", "static", "torn", "total",
+        "_aided",
+        "_air",
+        "_lift",
+        "_noise",
+        "_static_variance",
+        "_total_variance",
+        "between",
+        "misses",
+        "news",
+        "seen_static",
+        "seen_total",
+        "static",
+        "torn",
+        "total",
     )  # fmt: skip
 
     def __init__(
@@ -94,7 +109,7 @@ class Ports:
             variance, row_variance = variance + SMOOTHED * self._static_variance, variance + self._static_variance
         self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white, row_variance)
         self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset)
-        self._lift, self.misses, self.torn = GRAVITY, 0, False
+        self._lift, self.misses, self.torn, self.between = GRAVITY, 0, False, 0.0
         self.forget_seen()
 
     def forget_seen(self) -> None:
@@ -233,9 +248,11 @@ class Ports:
         speed = self._air.speed(tared, static)
         slope = self._air.density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
+        self.between = difference * difference if self.total.undecided else 0.0
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
         if self.total.coast(reading, tared, difference, spread, end):
             energy.widen_speed(difference * difference)
+            self.between = 0.0
             self.tell(t, "airspeed_recovered", "total")
 
     def hear_static(self, t: float, energy: EnergyFilter, at: float, reading: float, difference: float) -> None:

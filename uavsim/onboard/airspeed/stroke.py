@@ -1,4 +1,4 @@
-"""Whether the total pressure rises in the stroke as the force says: a cover that was left on, a shut port, a dead sensor.
+"""Whether the total pressure rises in the stroke as the force says: a cover left on, a shut port, a dead sensor.
 
 Since the launch the push has given u = ∫ (f_x − f_x at rest) dt. With the wind w along the launch that was seen on the
 rail, V = u ± w, and a live port's pressure has risen since by ½ρ (u² ± 2uw): at least by
@@ -6,9 +6,10 @@ rail, V = u ± w, and a live port's pressure has risen since by ½ρ (u² ± 2uw
     r = ½ρ (u² − 2u w⁺),    w⁺ = w + 3 σ_w
 
 A covered, shut or dead port has not risen at all. Once r is `SURE` standard deviations of a reading, and the pressure
-of `AGREED` readings in a row has risen by less than a quarter of it, the port is none. Of readings of a live port not one is
-that low (11 standard deviations), of a shut one all are. Tubes that have been swapped let the total pressure stand still
-and the static one rise: then both are named. A differential sensor then reads the same with the other sign. A pressure that has risen by half of r lives, and the test is over.
+of `AGREED` readings in a row has risen by less than a quarter of it, the port is none. Of readings of a live port not
+one is that low (11 standard deviations), of a shut one all are. Tubes that have been swapped let the total pressure
+stand still and the static one rise: then both are named. A differential sensor then reads the same with the other sign.
+A pressure that has risen by half of r lives, and the test is over.
 """
 
 from collections.abc import Iterable

@@ -29,6 +29,7 @@ from uavsim.onboard.airspeed.lift import Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
+from uavsim.onboard.airspeed.smooth import LEVEL, SmoothTest
 from uavsim.onboard.repeats import LEAST, apart
 
 Kept = tuple[float, float, float, float, float, float, float]
@@ -50,6 +51,10 @@ GAP = 0.1  # s without a pressure, after which a test begins anew: ten readings 
 # s. It is averaged over the last 10 s, and only while no more than a usual gust is between V and the force, for a leak
 # must not be learnt. In the first 5 s it is learnt in any case. By hand; docs/faults.md, the leaks, holds the check
 SLOW, LEARNT = 10.0, 5.0
+RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
+TURNS = (
+    2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
+)
 LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried on after a leak. By hand, as `UNSEEN`
 
 # -- the way back ------------------------------------------------------------------------------------------------------
@@ -63,6 +68,12 @@ UNTAKEN = ("jump", "silent", "invalid", "range")
 ASTRAY = ("drift", "leak", "jump")
 # kinds of a static port that is shut, to both sensors of a head that has a differential one; others are of its sensor
 SHUT_IN = ("frozen", "swapped")
+# kinds after which it must show the gusts that are declared: a port that is shut and leaks moves, but shows none
+GUSTLESS = ("frozen", "drift", "leak")
+
+# s from the last instant at which a live port was the better explanation to the flag. Beyond it an accelerometer that
+# drifts explains a total pressure that stands still in still air as well. By hand
+SLOWLY = 1.0
 
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
 
@@ -103,12 +114,14 @@ class TotalWatch:
     port : PortMonitor
     faulty : bool
         Whether the port is flagged.
+    undecided : bool
+        Whether an accelerometer that drifts would explain the same: in still air the airspeed crept from the force.
     """
 
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_p", "_pull", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty",
-        "port",
+        "_last", "_lost", "_near", "_p", "_pull", "_rough", "_silent", "_smooth", "_sound", "_still", "_t",
+        "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -130,12 +143,13 @@ class TotalWatch:
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
         if row_variance is not None:
             self.port.back = Readmission(row_variance * apart(alike), walk, row)
-        self.faulty = self._astray = False
+        self.faulty = self._astray = self.undecided = self._silent = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
         self._near, self._taught = 0, 0.0
         self._pull = Pull()
+        self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
     def take(
@@ -181,11 +195,17 @@ class TotalWatch:
             if self._near >= KEPT:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
-        tilted = self._pull.add(lift, dt)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, spread * dt, turn, tilted) == 0.0
+        gust = spread * dt + self._pull.add(lift, dt)
+        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, gust, turn) == 0.0
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
+        if self._declared:
+            smooth = self._smooth.add(reading, dt, test.nis, test.spread, self._pull.size < TURNS)
+            if smooth == 0.0:
+                self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
+            elif smooth > LEVEL:
+                return "leak"
         if self._wanders(v, change - energy.s * dt, test.lost, dt):
             return "leak"
         return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
@@ -208,6 +228,13 @@ class TotalWatch:
         """Be told by which variance, (m/s²)², the push has widened b at `t`, s; b forgets that in its own time."""
         self._jumped, self._jumped_at = self._bias_variance(t) - self._bias_sd**2 + variance, t
 
+    def open_bias(self, t: float, variance: float) -> None:
+        """Be told at `t`, s, that b may have moved by that variance, (m/s²)²."""
+        self.jump(t, variance)
+        self.port.frozen.open_bias(variance)
+        self._taught = min(self._taught, RELEARNT)
+        self._wandering.forget()
+
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""
         since = t - self._jumped_at
@@ -229,7 +256,9 @@ class TotalWatch:
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
-            before = self._sound if kind == "leak" else self._before[0]
+            before = self._before[0]
+            if kind == "leak":
+                before = self._rough if self._smooth.evidence > LEVEL else self._sound
             if before is not NOTHING:
                 trusted = before
         if kind in UNTAKEN or trusted is NOTHING:  # the filter has taken nothing of it
@@ -242,6 +271,9 @@ class TotalWatch:
         else:
             self.port.back.flag(t)
         self.faulty, self._astray = True, kind in ASTRAY
+        self._silent = self._declared and kind in GUSTLESS
+        self._smooth.flag(t)
+        self.undecided = kind == "frozen" and not self._declared and since > SLOWLY
         v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
@@ -251,10 +283,10 @@ class TotalWatch:
     def flag_in_stroke(
         self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
     ) -> None:
-        """Flag a port that has not risen in the stroke: V is what the force gave; pressure and V with their variance."""
+        """Flag a port that has not risen in the stroke; the pressure in it, and V by the force, with their variance."""
         self.port.back.flag(t, *held)
         self.faulty = self._astray = True
-        self._bias = 0.0
+        self.undecided, self._bias = False, 0.0
         energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
 
@@ -264,8 +296,11 @@ class TotalWatch:
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
+        lives = not self._silent or self._smooth.lives(t, reading)
         if self._astray:
             spread = min(spread, AGREE_SD * AGREE_SD)
+        if not lives:
+            difference = inf  # a port that shows no gusts agrees with nothing
         if not self.port.back.hear(t, reading, pressure, difference, spread):
             return False
         self.faulty = False
