@@ -697,13 +697,14 @@ class AidedFilter(Estimator):
             if kind:
                 self._not_risen(kind)
                 return nan
-        read, base, each = reading, 0.0, self._total_variance  # as it came; what it is relative to, Pa
+        read, each, base = reading, self._total_variance, 0.0  # as it came; its variance; what it is relative to, Pa
         if self._differential:
-            base = self._difference.static
             if self.ports.static.shut:  # to both sensors
-                reading, base, each = reading + base, 0.0, each + self._static_variance
-        onset, static = self._onset, base or energy.p
-        if not onset.settled and not onset.settle(energy, self.time, reading - self._zero + base, air, static):
+                reading, each = reading + self._difference.static, each + self._static_variance
+            else:
+                base = energy.p
+        onset = self._onset
+        if not onset.settled and not onset.settle(energy, self.time, reading - self._zero + base, air):
             return nan
         pushed = self._pushed(end)
         variance = each + pushed * pushed * self._push_variance
@@ -713,7 +714,7 @@ class AidedFilter(Estimator):
             variance += slope * slope * air.gust * abs(energy.v) * behind
         tared = reading - self._zero - self._noise.acceleration * pushed
         if self.ports.total.faulty:
-            self.ports.hear_total(self._t, energy, end, read, (tared + base, static), variance)
+            self.ports.hear_total(self._t, energy, end, read, tared + base, variance)
             return nan
         nis = energy.total(tared, variance, pushed, air.heat)
         if energy.taken:

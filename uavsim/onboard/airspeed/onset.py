@@ -8,12 +8,11 @@ A wind that is seen on the rail is taken for a headwind, V = w. If it was a tail
 pressure tells as soon as both cases differ by enough for one reading (`rest_wind.turning`).
 """
 
-from collections.abc import Iterable
 from math import inf
 
 from uavsim.onboard.airspeed.air import Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
-from uavsim.onboard.airspeed.rest_wind import Row, turning, wind_at_rest
+from uavsim.onboard.airspeed.rest_wind import turning, wind_at_rest
 
 ONE_SIDED = 9.0  # V²/σ_V², three standard deviations, below which V may be of either sign
 
@@ -34,29 +33,30 @@ class Onset:
     ----------
     wind : float
         The wind that is taken for a headwind, m/s; 0 for none, or once it is known which it was.
-    sd : float
-        Its standard deviation, m/s; infinite where nothing was read.
     settled : bool
         Whether total pressures are taken.
+    patience : float
+        Until when a push is waited for, s.
     """
 
-    __slots__ = ("_each", "_patience", "_tare_end", "_turning", "_wind_sd", "sd", "settled", "wind")
+    __slots__ = ("_each", "_tare_end", "_turning", "_wind_sd", "patience", "settled", "wind")
 
     def __init__(self, each: float, tare_end: float, wind_sd: float) -> None:
         self._each, self._tare_end, self._wind_sd = each, tare_end, wind_sd
         self.wind = self._turning = 0.0
-        self.sd = inf
-        self.settled, self._patience = False, inf
+        self.settled, self.patience = False, inf
 
-    def look(self, rows: Iterable[Row], end: float, tare: tuple[float, float], density: float) -> float:
+    def know(self) -> None:
+        """Be told that the wind is known, and its side."""
+        self.wind = self._turning = 0.0
+
+    def look(self, seen: tuple[float, float] | None, tare: tuple[float, float], density: float) -> float:
         """Find the wind by what was read on the rail; return its standard deviation, m/s.
 
         Parameters
         ----------
-        rows : iterable of tuple
-            Readings of the head.
-        end : float
-            Conversions that end by then count, s.
+        seen : tuple of float or None
+            The pair's mean difference at rest, Pa, and its variance, Pa².
         tare : tuple of float
             Of the pair, Pa, and its variance, Pa².
         density : float
@@ -64,40 +64,27 @@ class Onset:
         """
         self.wind, sd = 0.0, inf
         if self._tare_end > -inf:
-            self.wind, sd = wind_at_rest(
-                rows,
-                start=self._tare_end,
-                end=end,
-                tare=tare[0],
-                variance=tare[1],
-                each=self._each,
-                density=density,
-            )
-        self.sd = sd
+            self.wind, sd = wind_at_rest(seen, *tare, density)
         self._turning = turning(self.wind, self._each, density)
         return min(sd, self._wind_sd)
 
     def begin(self, patience: float) -> None:
         """Leave total pressures out from now on; from `patience`, s, on V is what they say, without a push, too."""
-        self.settled, self._patience = False, patience
+        self.settled, self.patience = False, patience
 
-    def settle(self, energy: EnergyFilter, time: float, total: float, air: Air, static: float | None = None) -> bool:
-        """Judge by a total pressure, tared, Pa, of an instant, s, whether it and those to come are taken.
-
-        The static pressure, Pa, is that of the filter, if no other is given.
-        """
-        static = energy.p if static is None else static
-        late = not time < self._patience
+    def settle(self, energy: EnergyFilter, time: float, total: float, air: Air) -> bool:
+        """Judge by a total pressure, tared, Pa, of an instant, s, whether it and those to come are taken."""
+        late = not time < self.patience
         if energy.v * abs(energy.v) < ONE_SIDED * energy.vv:
             if not late:
                 return False
-            speed = air.speed(total, static)
+            speed = air.speed(total, energy.p)
             energy.restart(speed, max(energy.vv, speed * speed / ONE_SIDED))
         elif self.wind > 0.0:
             if energy.v < self._turning and not late:
                 return False
             wind, self.wind = self.wind, 0.0
-            if 2.0 * air.speed(total, static) < energy.v + abs(energy.v - 2.0 * wind):  # it was a tailwind
+            if 2.0 * air.speed(total, energy.p) < energy.v + abs(energy.v - 2.0 * wind):  # it was a tailwind
                 energy.shift_speed(-2.0 * wind)
                 return False
         self.settled = True

@@ -219,13 +219,7 @@ class Ports:
     # -- the way back --------------------------------------------------------------------------------------------------
 
     def hear_total(
-        self,
-        t: float,
-        energy: EnergyFilter,
-        end: float,
-        reading: float,
-        pressures: tuple[float, float],
-        variance: float,
+        self, t: float, energy: EnergyFilter, end: float, reading: float, tared: float, variance: float
     ) -> None:
         """Compare a flagged total port with the filter that coasts; take it back when they have agreed for long enough.
 
@@ -237,15 +231,10 @@ class Ports:
             The filter that coasts.
         end : float
             End of the conversion, s.
-        reading : float
-            The channel as it came, Pa.
-        pressures : (total, static)
-            The total pressure tared, and the static one, Pa.
-        variance : float
-            Of the channel's noise, Pa².
+        reading, tared, variance : float
+            The channel as it came, and the pressure tared, Pa; the variance of its noise, Pa².
         """
-        tared, static = pressures
-        speed = self._air.speed(tared, static)
+        speed = self._air.speed(tared, energy.p)
         slope = self._air.density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
         self.between = difference * difference if self.total.undecided else 0.0
