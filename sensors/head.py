@@ -15,8 +15,9 @@ The sensors run freely, so the two values of a row are of different instants and
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
 cover both ports feel the static pressure, wind or not.
 
-With nothing between the air and two sensors that do not feel acceleration, a conversion takes the truth at the middle
-of its window, and only conversions that are polled ask for it (`full` is false). Otherwise the head must feel each
+With no tube between the air and two sensors that do not feel acceleration, a conversion takes the truth, and what the
+ports make of it, at the middle of its window, and only conversions that are polled ask for it (`full` is false; of a
+plant that tells no `flow_at` any time, with ports that tell the truth alone). Otherwise the head must feel each
 plant step (`feel`): ports, tubes and membranes are followed, and a conversion is the mean over its window of what is
 felt, linear between plant steps and integrated exactly,
 
@@ -90,9 +91,9 @@ class AirDataHead:
     """
 
     __slots__ = (
-        "_dt", "_last_static", "_lines", "_membranes", "_next_poll", "_open", "_response", "_settings", "_static_error",
-        "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error", "_total_felt",
-        "_total_truth", "covered_until", "due", "full", "static", "surroundings", "total",
+        "_dt", "_last_static", "_lines", "_membranes", "_next_poll", "_open", "_ports", "_response", "_settings",
+        "_static_error", "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error",
+        "_total_felt", "_total_truth", "covered_until", "due", "full", "static", "surroundings", "total",
     )  # fmt: skip
 
     def __init__(
@@ -131,10 +132,15 @@ class AirDataHead:
         self._open = (self._total_error, self._static_error, *self._lines) == (None,) * 4
         felt = settings.acceleration_sensitivity
         self._membranes = (*self.total.acceleration, *self.static.acceleration) if felt else (0.0,) * 6
-        self.full = not self._open or any(self._membranes)
-        port = self._total_port if self._response is None else self._difference
-        self._total_truth = self._mean_of_total if self.full else port
-        self._static_truth = self._mean_of_static if self.full else self._static_port
+        ports = not (self._total_error is None and self._static_error is None)
+        behind = self._lines != (None, None) or any(self._membranes)
+        self.full = behind or (ports and not hasattr(surroundings, "flow_at"))
+        of_total, of_static = (self._total_read, self._static_read) if ports else (self._total_port, self._static_port)
+        self._ports = of_total, of_static
+        self._total_truth = (
+            self._mean_of_total if self.full else of_total if self._response is None else self._difference
+        )
+        self._static_truth = self._mean_of_static if self.full else of_static
         self._lines = None
 
     def feel(self, t: float, force: Triple) -> None:
@@ -199,14 +205,32 @@ class AirDataHead:
         return (p_static if t < self.covered_until else p_total), temperature
 
     def _difference(self, t: float) -> tuple[float, float]:
-        p_total, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
+        of_total, of_static = self._ports
+        (total, temperature), (static, _) = of_total(t), of_static(t)
         assert self._response is not None
-        difference = 0.0 * p_static if t < self.covered_until else p_total - p_static
-        return self._response(difference, p_static, temperature), temperature
+        return self._response(total - static, static, temperature), temperature
 
     def _static_port(self, t: float) -> tuple[float, float]:
         _, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
         return p_static, temperature
+
+    def _flow_at(self, t: float) -> Flow:
+        flow: Flow = getattr(self.surroundings, "flow_at", no_flow)(t)  # not kept: it would hold the plant
+        return flow
+
+    def _total_read(self, t: float) -> tuple[float, float]:
+        total, static, temperature, mach, alpha, beta, throttle = self._flow_at(t)
+        if t < self.covered_until:
+            return static, temperature
+        port = self._total_error
+        return (total if port is None else port(total, static, mach, alpha, beta, throttle)), temperature
+
+    def _static_read(self, t: float) -> tuple[float, float]:
+        total, static, temperature, mach, alpha, beta, throttle = self._flow_at(t)
+        port = self._static_error
+        if port is None or t < self.covered_until:
+            return static, temperature
+        return port(total, static, mach, alpha, beta, throttle), temperature
 
     def _mean_of_total(self, middle: float) -> tuple[float, float]:
         return self._mean(self._total_felt, middle, self.total.half_window), self._temperature
@@ -268,6 +292,11 @@ class AirDataHead:
         if self._response is not None and self._response.passes:
             of_total, of_static = passing(of_total), passing(of_static)
         return line(*total, of_total), line(*static, of_static)
+
+
+def no_flow(_t: float) -> Flow:
+    """Return what is known of the air where nobody says anything."""
+    return NO_FLOW
 
 
 def _sensor(

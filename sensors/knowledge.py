@@ -22,6 +22,7 @@ from sensors.differential_description import DifferentialDescription
 from sensors.mounting import attitude, product, transposed
 from sensors.pneumatics import GAMMA, GAS_CONSTANT, STANDARD, laminar_lag
 from sensors.pressure_description import PressureDescription
+from sensors.probe import LIMITS, static_port, total_port
 from sensors.settings import (
     AccelerometerSettings,
     AirDataSettings,
@@ -39,6 +40,9 @@ LAPSE, CLIMB = 0.0065, 3.0  # K/m of the standard atmosphere; m/s, of an aircraf
 FLIGHT = 30.0  # s between tare and end for which a ramp of the temperature is covered by a random walk
 TYPICAL = 600.0  # Pa, at which the share is taken that the tubes lose: 31 m/s at sea level
 LOST_SD = 0.25  # of what they lose; see above
+CALIBRATED = 1e-3  # of q_c, what a calibration of a head against a reference tube leaves: 0.05 % of the airspeed
+CALIBRATED_SHARE = 0.1  # what it leaves of what angles and propeller make
+USUAL_MACH = 0.3  # at which an uncalibrated dependence on the Mach number counts
 COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
 
 
@@ -154,6 +158,38 @@ class DifferenceKnowledge:
 
 
 @dataclass(frozen=True, slots=True)
+class PortKnowledge:
+    """What a calibration tells of both ports' errors, by the law of `sensors.probe`.
+
+    Attributes
+    ----------
+    limit : float
+        Angle at which the total port loses one hundredth, rad; infinite of one that loses nothing.
+    error, error_alpha, error_alpha2, error_beta2, error_mach2 : float
+        Coefficients of the static port; 0 where nothing is known but their size.
+    total_slipstream, static_slipstream : float
+        What the propeller adds at full throttle.
+    position_sd, alpha_sd, alpha2_sd, beta2_sd, slipstream_sd : float
+        Standard deviations of the coefficients: of `error` with `error_mach2`, of the three of the angles, and of both
+        slipstreams as a share of them.
+    """
+
+    limit: float
+    error: float
+    error_alpha: float
+    error_alpha2: float
+    error_beta2: float
+    error_mach2: float
+    total_slipstream: float
+    static_slipstream: float
+    position_sd: float
+    alpha_sd: float
+    alpha2_sd: float
+    beta2_sd: float
+    slipstream_sd: float
+
+
+@dataclass(frozen=True, slots=True)
 class HeadKnowledge:
     """What may be believed of a reading of the air-data head.
 
@@ -163,6 +199,7 @@ class HeadKnowledge:
         Readings a second, Hz.
     total, static : PressureKnowledge
         The first is the differential sensor where the head has one: pressures are differences then.
+    ports : PortKnowledge
     temperature_sd : float
         Of the temperature, K: noise, turn-on offset, and what the board is warmer than the air.
     column, column_sd : float
@@ -180,6 +217,7 @@ class HeadKnowledge:
     rate: float
     total: PressureKnowledge
     static: PressureKnowledge
+    ports: PortKnowledge
     temperature_sd: float
     column: float
     column_sd: float
@@ -236,6 +274,7 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         rate=settings.rate,
         total=total,
         static=static,
+        ports=_known_of_ports(settings),
         temperature_sd=hypot(
             thermometer.temperature_noise_sd, thermometer.temperature_offset_sd, settings.thermal.self_heating
         ),
@@ -255,6 +294,45 @@ def _known_of_difference(part: DifferentialDescription, settings: AirDataSetting
         flow=part.flow,
         flow_pressure=part.flow_pressure,
         hose=hose(tubes) if part.flow > 0.0 else 0.0,
+    )
+
+
+def _known_of_ports(settings: AirDataSettings) -> PortKnowledge:
+    """Return what is known of the ports' errors: of a unit that was calibrated, or their size alone."""
+    s, total = settings.static_port, settings.total_port
+    limit = LIMITS.get(total.probe, inf)
+    if settings.calibration == "unit":
+        ideal = total_port(total) is None and static_port(s) is None
+        return PortKnowledge(
+            limit=limit,
+            error=s.error,
+            error_alpha=s.error_alpha,
+            error_alpha2=s.error_alpha2,
+            error_beta2=s.error_beta2,
+            error_mach2=s.error_mach2,
+            total_slipstream=total.slipstream,
+            static_slipstream=s.slipstream,
+            position_sd=0.0 if ideal else CALIBRATED,
+            alpha_sd=CALIBRATED_SHARE * abs(s.error_alpha),
+            alpha2_sd=CALIBRATED_SHARE * abs(s.error_alpha2),
+            beta2_sd=CALIBRATED_SHARE * abs(s.error_beta2),
+            slipstream_sd=CALIBRATED_SHARE,
+        )
+    mach2 = s.error_mach2 * USUAL_MACH**2
+    return PortKnowledge(
+        limit=limit,
+        error=0.0,
+        error_alpha=0.0,
+        error_alpha2=0.0,
+        error_beta2=0.0,
+        error_mach2=0.0,
+        total_slipstream=total.slipstream,
+        static_slipstream=s.slipstream,
+        position_sd=hypot(s.error, mach2),
+        alpha_sd=abs(s.error_alpha),
+        alpha2_sd=abs(s.error_alpha2),
+        beta2_sd=abs(s.error_beta2),
+        slipstream_sd=1.0,
     )
 
 

@@ -9,13 +9,16 @@ further out it ends at the static pressure, as what a probe reads of a flow from
 
 Static port, with its position error as a polynomial, in shares of the local impact pressure:
 
-    p = p_s + q_c (1 + e η) (c₀ + c_α α + c_αα α² + c_ββ β² + c_M M²)
+    p = p_s + q_c (1 + e η) (c₀ + c_α z + c_αα z² + c_ββ y² + c_M M²),   z = sin α cos β,  y = sin β
+
+At small angles z and y are α and β. Further out they are the air's speed across the body over that past it: holes in a
+tube feel its square, down to the −1 of a cylinder in potential flow.
 
 e is how much of the dynamic pressure the propeller adds at full throttle η = 1 where the port stands.
 """
 
 from collections.abc import Callable
-from math import acos, cos, isfinite, nan, radians
+from math import acos, cos, isfinite, nan, radians, sin
 
 from sensors.settings import StaticPortSettings, TotalPortSettings
 
@@ -88,7 +91,10 @@ def static_port(settings: StaticPortSettings) -> Port | None:
         return None
 
     def port(p_total: float, p_static: float, mach: float, alpha: float, beta: float, throttle: float) -> float:
-        error = c0 + (c1 + c2 * alpha) * alpha + cb * beta * beta + cm * mach * mach
+        if not (isfinite(alpha) and isfinite(beta)):
+            return nan
+        side, down = sin(beta), sin(alpha) * cos(beta)
+        error = c0 + (c1 + c2 * down) * down + cb * side * side + cm * mach * mach
         return p_static + (p_total - p_static) * (1.0 + slipstream * throttle) * error
 
     return port

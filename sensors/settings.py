@@ -15,6 +15,7 @@ from sensors.differential_description import DifferentialDescription
 from sensors.pressure_description import PressureDescription, PressureErrors
 from sensors.unit import Unit
 
+Calibration = Literal["unit", "none"]
 Tare = Literal["covered", "open", "none"]
 Phase = Literal["always", "waiting", "stroke", "flight"]
 Band = Annotated[float, Interval(gt=0.0, lt=500.0)]  # Hz, below half of the plant's 1 kHz
@@ -389,7 +390,9 @@ class TotalPortSettings:
 
 @dataclass(frozen=True, slots=True)
 class StaticPortSettings:
-    """The static port and its position error, (p_read - p_s)/q_c = c0 + cα α + cαα α² + cββ β² + cM M².
+    """The static port and its position error, (p_read - p_s)/q_c = c0 + cα z + cαα z² + cββ y² + cM M².
+
+    z = sin α cos β and y = sin β, at small angles α and β.
 
     Attributes
     ----------
@@ -450,6 +453,10 @@ class AirDataSettings:
         Length of the mean that the tare is, s.
     cover_off : float
         Time before release at which the tare ends and the cover, if there is one, is taken off, s.
+    calibration : {"unit", "none"}
+        What is known of both ports' errors. "unit": a calibration of this head found them, with an error of its own (a
+        thousandth of the impact pressure, and a tenth of what each angle and the propeller make); what the filter knows
+        is taken off. "none": nothing but their size is known.
     position : (x, y, z)
         Of the head from the aircraft's EYEPOINT, body axes, m; its pressures come from the flow there. This is the tube
         on the nose of fw8. A rig has its head where the stream is.
@@ -467,6 +474,7 @@ class AirDataSettings:
     static_port: StaticPortSettings = field(default_factory=StaticPortSettings)
     pipe: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.0
     position: tuple[Arm, Arm, Arm] = (0.65, 0.0, 0.0)
+    calibration: Calibration = "unit"
     acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
 

@@ -13,29 +13,56 @@ estimator: this module alone copies them from the one into the other. What no de
   is that of the field.
 """
 
-from dataclasses import replace
-from math import cos, hypot, radians, sin
+from dataclasses import dataclass, replace
+from math import cos, hypot, radians, sin, sqrt
 
 from sensors import HeadKnowledge, Streams, known_of_accelerometer, known_of_head, membranes
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
+from uavsim.onboard.airspeed.head_errors import HeadErrors
 from uavsim.onboard.flow_through import FlowThroughSettings
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.plants.air.dryden import FOOT, LOWEST, deviations, lengths
 from uavsim.plants.air.settings import EnvironmentSettings
 from uavsim.plants.air.weather import at_ground
-from uavsim.plants.air.wind import growth
+from uavsim.plants.air.wind import growth, mean_wind
 from uavsim.scenario import MismatchSettings, Scenario
 
 # of a thermal part's range: an aircraft is above its field, where what it reads is worth more; 1 % is 90 m
 ENDS = 0.98
+GROWN = 0.3  # share of the mean wind's growth along the path that is not known: place, veer and the aircraft's heading
+DECLARED = 0.1  # share of the mean wind that a declared one is off by: a hand anemometer, gusts between its looks
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
 
 
-def calibrated(scenario: Scenario, streams: Streams) -> tuple[float, float]:
-    """What a calibration found of the two membranes' sensitivity along body x, Pa/(m/s²); total, static.
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """What a calibration of the units that fly found, with errors of its own.
 
-    It is done on the units that fly, with an error of its own.
+    Attributes
+    ----------
+    total, static : float
+        The two membranes' sensitivity along body x, Pa/(m/s²).
+    ports : tuple of float
+        Its errors of the static port's coefficients c₀, c_α, c_αα and c_ββ, in their standard deviations.
     """
+
+    total: float = 0.0
+    static: float = 0.0
+    ports: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+
+
+NO_CALIBRATION = Calibration()
+
+
+def calibrated(scenario: Scenario, streams: Streams) -> Calibration:
+    """What a calibration found: done on the units that fly, with errors of its own."""
+    a, b, c, d = streams("onboard.ports.calibration").standard_normal(4).tolist()
+    total, static = _membranes(scenario, streams)
+    return Calibration(total, static, (a, b, c, d))
+
+
+def _membranes(scenario: Scenario, streams: Streams) -> tuple[float, float]:
+    """The two membranes' sensitivity along body x as it was found, Pa/(m/s²); total, static."""
     air, share = scenario.air_data, scenario.mismatch.acceleration_calibration
     if not air.acceleration_sensitivity:
         return 0.0, 0.0
@@ -47,7 +74,7 @@ def calibrated(scenario: Scenario, streams: Streams) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 0.0)) -> NoiseModel:
+def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION) -> NoiseModel:
     """What the estimator believes of the head and of the accelerometer."""
     belief = scenario.mismatch
     head, accelerometer = (
@@ -57,7 +84,7 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
     total, static = head.total, head.static
     thin = _thin(scenario, head)
     ends = thin if thin == 1.0 else ENDS * thin
-    known, unknown = _acceleration(head, belief, calibration)
+    known, unknown = _acceleration(head, belief, (calibration.total, calibration.static))
     return NoiseModel(
         total_sd=belief.total_noise * thin * total.noise_sd,
         static_sd=belief.static_noise * static.noise_sd,
@@ -96,6 +123,31 @@ def believed_noise(scenario: Scenario, calibration: tuple[float, float] = (0.0, 
         difference_sd=belief.drift * thin * head.difference_sd,
         differential=head.difference is not None,
         difference_scale_sd=0.0 if head.difference is None else belief.difference_scale * head.difference.scale_sd,
+        head=_ports(head, belief, calibration),
+        covered=scenario.air_data.tare == "covered",
+    )
+
+
+def _ports(head: HeadKnowledge, belief: MismatchSettings, calibration: Calibration) -> HeadErrors:
+    """What is believed of both ports' errors: as the calibration found them."""
+    ports, (error, alpha, alpha2, beta2) = head.ports, calibration.ports
+    known = belief.position
+    if head.ports.error == head.ports.error_alpha == head.ports.error_alpha2 == head.ports.error_beta2 == 0.0:
+        error = alpha = alpha2 = beta2 = 0.0  # nothing was found
+    return HeadErrors(
+        limit=ports.limit,
+        error=known * (ports.error + error * ports.position_sd),
+        error_alpha=known * (ports.error_alpha + alpha * ports.alpha_sd),
+        error_alpha2=known * (ports.error_alpha2 + alpha2 * ports.alpha2_sd),
+        error_beta2=known * (ports.error_beta2 + beta2 * ports.beta2_sd),
+        error_mach2=known * ports.error_mach2,
+        total_slipstream=known * ports.total_slipstream,
+        static_slipstream=known * ports.static_slipstream,
+        position_sd=belief.position_sd * ports.position_sd,
+        alpha_sd=belief.position_sd * ports.alpha_sd,
+        alpha2_sd=belief.position_sd * ports.alpha2_sd,
+        beta2_sd=belief.position_sd * ports.beta2_sd,
+        slipstream_sd=belief.position_sd * ports.slipstream_sd,
     )
 
 
@@ -132,12 +184,43 @@ def believed_air(scenario: Scenario) -> EstimatorSettings:
         settings = replace(settings, vapour_fraction=belief.humidity * at_ground(scenario.environment).vapour_fraction)
     height = max(scenario.flight_computer.height, LOWEST * FOOT)
     sd, length = turbulence(scenario.environment, height, scenario.launcher.heading_deg)
-    shear = belief.gust * growth(scenario.environment, height)
-    settings = replace(settings, aided=replace(settings.aided, shear=shear)) if shear > 0.0 else settings
+    grown = growth(scenario.environment, sqrt(height * scenario.launcher.height))
+    if scenario.plant.chosen.flies:
+        settings = replace(settings, aided=replace(settings.aided, launch_height=scenario.launcher.height))
+    if grown > 0.0:
+        angle = radians(scenario.launcher.heading_deg - scenario.environment.wind_from_deg)
+        known = belief.wind * grown * cos(angle)
+        settings = replace(
+            settings, aided=replace(settings.aided, shear=belief.gust * GROWN * grown, shear_along=known)
+        )
+    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario)))
     sd *= belief.gust
     if not sd > 0.0:
         return settings
     return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length, gust_height=height))
+
+
+def _rail_wind(scenario: Scenario) -> dict[str, float]:
+    """The wind past the aircraft on its rail as it is declared, unless the estimator's settings have one."""
+    environment, launcher, share = scenario.environment, scenario.launcher, scenario.mismatch.wind
+    if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.flies:
+        return {}
+    up = radians(launcher.elevation_deg)
+    height = launcher.height + scenario.air_data.position[0] * sin(up)
+    north, east = mean_wind(environment, height)
+    turbulent, _ = deviations(environment.turbulence_wind_20ft, height)
+    sd = hypot(scenario.mismatch.gust * turbulent, share * DECLARED * hypot(north, east)) if share > 0.0 else 0.0
+    if not sd > 0.0:
+        return {}
+    heading = radians(launcher.heading_deg)
+    head = -(north * cos(heading) + east * sin(heading))
+    right = north * sin(heading) - east * cos(heading)
+    return {
+        "rail_wind_along": share * head * cos(up),
+        "rail_wind_side": share * right,
+        "rail_wind_down": share * head * sin(up),
+        "rail_wind_sd": sd,
+    }
 
 
 def _bounded(scenario: Scenario) -> EstimatorSettings:

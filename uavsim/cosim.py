@@ -23,7 +23,7 @@ from weakref import proxy
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__, part_range
-from uavsim.beliefs import believed_air, believed_flow, believed_noise, calibrated
+from uavsim.beliefs import NO_CALIBRATION, Calibration, believed_air, believed_flow, believed_noise, calibrated
 from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
@@ -61,8 +61,8 @@ class Draws:
     release_time: float  # s
     force_factor: float
     plant_seed: int
-    calibration: tuple[float, float] = (0.0, 0.0)
-    """What a calibration of both membranes along body x found of their sensitivity to acceleration, Pa/(m/s²)."""
+    calibration: Calibration = NO_CALIBRATION
+    """What a calibration of the units that fly found."""
 
 
 def draw(scenario: Scenario, index: int | None = None) -> Draws:
@@ -124,7 +124,7 @@ class Onboard:
     which of the two it came from.
     """
 
-    def __init__(self, scenario: Scenario, release_time: float, calibration: tuple[float, float]) -> None:
+    def __init__(self, scenario: Scenario, release_time: float, calibration: Calibration) -> None:
         rate = scenario.accelerometer.description().rate
         self._release_time = release_time
         self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)

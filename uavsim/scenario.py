@@ -83,6 +83,10 @@ class MismatchSettings:
         Factor on the standard deviation of what is not known of it.
     acceleration_calibration : float
         Error of a calibration of the membranes' sensitivity, as a share of what is usual for the part.
+    position : float
+        Factor on what is known of the ports' errors: the probe's angle apart, position error and slipstream.
+    position_sd : float
+        Factor on the standard deviation of what is not known of them.
     accelerometer_noise : float
         Factor on the standard deviation of a reading of specific force, vibration included.
     accelerometer_scale : float
@@ -97,6 +101,8 @@ class MismatchSettings:
         Share of what a thermal differential sensor loses by thin air and in its tubes that is undone; 0: nothing.
     gust : float
         Factor on the standard deviation of the turbulence that the environment declares, and on the mean wind's growth.
+    wind : float
+        Factor on the wind on the rail that the environment declares, and on its standard deviation; 0: none is known.
     humidity : float
         Factor on the share of vapour in the air.
     """
@@ -109,6 +115,8 @@ class MismatchSettings:
     acceleration: Annotated[float, Interval(ge=-10.0, le=10.0)] = 1.0
     acceleration_sd: Belief = 1.0
     acceleration_calibration: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.3
+    position: Annotated[float, Interval(ge=-10.0, le=10.0)] = 1.0
+    position_sd: Belief = 1.0
     accelerometer_noise: Belief = 1.0
     accelerometer_scale: Belief = 1.0
     accelerometer_offset: Belief = 1.0
@@ -116,6 +124,7 @@ class MismatchSettings:
     difference_scale: Belief = 1.0
     flow_through: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     gust: Belief = 1.0
+    wind: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     humidity: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
 
 

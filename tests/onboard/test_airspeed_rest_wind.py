@@ -7,7 +7,7 @@ import pytest
 
 from uavsim.onboard.airspeed import AidedFilter, AidedSettings, EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.gust import LOWEST, gust_density, shear_density
-from uavsim.onboard.airspeed.rest_wind import HIDDEN, turning, wind_at_rest
+from uavsim.onboard.airspeed.rest_wind import HIDDEN, rest_difference, turning, wind_at_rest
 
 DENSITY = 1.225
 STATIC = 101_325.0
@@ -21,8 +21,9 @@ def rows(difference: float, sd: float = 0.0, count: int = 40, seed: int = 1) -> 
 
 
 def seen(readings: list[tuple[float, ...]], **changes: float) -> tuple[float, float]:
-    given = {"start": 0.9, "end": 2.0, "tare": 0.0, "variance": 0.0, "each": 4.0, "density": DENSITY} | changes
-    return wind_at_rest(readings, **given)
+    given = {"start": 0.9, "end": 2.0, "density": DENSITY} | changes
+    found = rest_difference(readings, start=given["start"], end=given["end"], each=4.0)
+    return wind_at_rest(found, 0.0, 0.0, given["density"])
 
 
 def test_a_wind_well_above_the_noise_is_seen() -> None:

@@ -268,6 +268,7 @@ def run(
             accelerometer_sd=flight.force_sd,
             accelerometer_rate=flight.rate,
             head_rate=flight.head_rate,
+            rail_elevation=float(np.radians(flight.elevation_deg)),
             total_step=flight.total_step,
             static_step=flight.static_step,
         )

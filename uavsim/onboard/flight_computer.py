@@ -372,6 +372,7 @@ class FlightComputer:
         elif self.state == "wings":
             self._note(t, "motor_on")
             self._command(throttle=self.settings.throttle_level)
+            self.estimator.throttle(t, self.settings.throttle_level)
             self.state, self._last_estimate = "flying", t
         else:
             self._note(t, "rearmed")
@@ -414,6 +415,7 @@ class FlightComputer:
         throttle = self._throttle(error, pitch, dt) if self._trusted else self._safe(pitch)
         wing, _, _, roll, engaged = self.commands
         self.commands = (wing, throttle, pitch, roll, engaged)
+        self.estimator.throttle(t, throttle)
 
     def _doubt(self, t: float, valid: bool) -> None:
         """Give up an estimate that stays invalid; take it up again when it has stayed valid."""

@@ -126,5 +126,8 @@ class Estimator:
     def rearmed(self, t: float) -> None:
         """Be told that it was none and that the aircraft sits on its rail again."""
 
+    def throttle(self, t: float, value: float) -> None:
+        """Be told that the motor is commanded to `value`, 0 … 1, from `t`, s, on."""
+
     def unfolding(self, t: float) -> None:
         """Be told that the wings have been commanded out at `t`, s: masses that move push the accelerometer about."""

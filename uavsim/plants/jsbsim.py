@@ -21,6 +21,7 @@ from collections.abc import Callable, Iterator
 from difflib import get_close_matches
 from math import atan2, cos, exp, inf, isfinite, pi, sin, sqrt
 from pathlib import Path
+from struct import unpack_from
 from tempfile import TemporaryDirectory
 from typing import Any
 from weakref import proxy
@@ -595,6 +596,20 @@ class JsbsimPlant:
             mach, alpha, beta = mach + faster, atan2(w, u), atan2(v, sqrt(u * u + w * w))
         total = airdata.isentropic_total(static, mach)
         return total, static, temperature * RANKINE, mach, alpha, beta, self.row[THROTTLE]
+
+    def flow_at(self, time: float) -> tuple[float, float, float, float, float, float, float]:
+        """As `flow`, at any recorded `time`, s: pressures, temperature and Mach number as of `air`, else nearest."""
+        total, static, temperature = self.air(time)
+        k = round(time * self._rate)
+        at = (k if k < self.k else self.k) * ROW.size
+        here = OF_RECORD.unpack_from(self._buffer, at)
+        alpha, beta = here[10], here[11]
+        if moves := self._beside(here):
+            _, u, v, w = moves
+            alpha, beta = atan2(w, u), atan2(v, sqrt(u * u + w * w))
+        mach = sqrt(max(0.0, 5.0 * ((total / static) ** (2.0 / 7.0) - 1.0)))
+        (throttle,) = unpack_from("d", self._buffer, at + 8 * THROTTLE)
+        return total, static, temperature, mach, alpha, beta, throttle
 
     def _beside(self, here: Row) -> tuple[float, float, float, float] | None:
         """How the head moves, which has ω × r beside the centre of gravity, or nothing if it has none.

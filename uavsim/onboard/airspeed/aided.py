@@ -40,23 +40,26 @@ from math import inf, nan, sqrt
 
 from uavsim import airdata
 from uavsim.onboard.airspeed.air import SLOWEST, Air
-from uavsim.onboard.airspeed.difference import Difference
+from uavsim.onboard.airspeed.difference import Difference, channel_range
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.first_climb import FirstClimb
+from uavsim.onboard.airspeed.flow_angles import FlowAngles
 from uavsim.onboard.airspeed.gust import GRAVITY
-from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.interface import NoiseModel, within
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.lift import pulled
 from uavsim.onboard.airspeed.membrane_push import MembranePush
 from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.onset import ONE_SIDED, Onset
+from uavsim.onboard.airspeed.paper import TRANSONIC
 from uavsim.onboard.airspeed.ports import PERSISTENT, Ports
 from uavsim.onboard.airspeed.push_end import PushEnd
-from uavsim.onboard.airspeed.rail import RailCheck, limits, pause
+from uavsim.onboard.airspeed.rail import RailCheck, pause
+from uavsim.onboard.airspeed.rail_wind import AGO, RailWind
 from uavsim.onboard.airspeed.rest_force import RestForce
-from uavsim.onboard.airspeed.rest_wind import Row
+from uavsim.onboard.airspeed.rest_wind import Row, rest_difference
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.shock import Shock
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
@@ -67,9 +70,11 @@ from uavsim.onboard.interface import Estimate, Estimator, Feel, TareWindow
 from uavsim.onboard.plausible import (
     FASTEST,
     LEAST_PRESSURE,
+    LEAST_TEMPERATURE,
     MOST_FLIGHT_FORCE,
     MOST_FORCE,
     MOST_PRESSURE,
+    MOST_TEMPERATURE,
 )
 from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
@@ -112,6 +117,7 @@ VALID = 8.0  # σ_V from which on an airspeed is valid: 2 V* of the pressures' l
 # beyond it the airspeed hold falls back to a safe throttle. By hand; docs/faults.md says how long that lasts
 COASTED = 2.0
 FRESH = 0.2  # s since a total pressure was taken, up to which the airspeed does not coast. By hand
+LAW_ENDS = 0.2 * TRANSONIC**2  # V² over 7 R T, beyond which no airspeed is valid: a² = 0.2 · 7 R T
 MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
 
 # s for which pressures alone are not valid after the filter has ended, or after they have jumped: what they say then is
@@ -153,13 +159,16 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_apart", "_base", "_difference", "_differential", "_fastest", "_first_climb", "_flight_force",
-        "_force", "_fresh", "_gained", "_gated", "_heard", "_lift", "_longest", "_muted", "_noise", "_on_rail",
-        "_onset", "_pause", "_plain", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd",
-        "_rows", "_scale_share", "_scale_variance", "_settings", "_shock", "_stamps", "_static_age", "_static_ends",
-        "_static_spikes", "_static_variance", "_steady_from", "_steps", "_stroke", "_sudden", "_t", "_tare",
-        "_tare_end", "_temperature_share", "_total_age", "_total_ends", "_total_spikes", "_total_variance", "_u",
-        "_unfolding", "_w", "_waiting", "_warmth", "_zero", "energy", "flying", "news", "ports", "time",
+        "_air", "_angles", "_apart", "_base", "_coldest", "_difference", "_differential", "_fastest", "_first_climb",
+        "_flight_force", "_force", "_fresh", "_gained", "_gated", "_grown", "_head", "_heard", "_lift", "_longest",
+        "_muted", "_noise", "_on_rail", "_onset", "_pair_variance", "_pause", "_plain", "_plain_tare", "_position",
+        "_position_share", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd", "_rows",
+        "_scale_share", "_scale_variance", "_settings", "_shock", "_stamps", "_start_wind", "_static_age",
+        "_static_ends", "_static_spikes", "_static_variance", "_static_within", "_steady_from", "_steps", "_stroke",
+        "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_throttle", "_total_age", "_total_ends",
+        "_total_spikes", "_total_variance", "_total_within", "_u", "_unfolding", "_w", "_waiting", "_warmed",
+        "_warmed_share", "_warmest", "_warmth", "_wind", "_wind_known", "_wrong", "energy", "flying", "news", "ports",
+        "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -177,38 +186,51 @@ class AidedFilter(Estimator):
         self._static_age = 0.5 * noise.static_window + noise.static_lag
         self._total_variance = max(noise.total_sd, MODEL) ** 2
         self._static_variance = max(noise.static_sd, MODEL) ** 2
+        self._pair_variance = self._total_variance + (0.0 if noise.differential else self._static_variance)
         self._difference, self._differential = Difference(noise.differential), noise.differential
         self._scale_share = 0.5 * noise.difference_scale_sd
         self._scale_variance = noise.accelerometer_scale_sd**2 + self._scale_share**2
         self._temperature_share = 0.5 * noise.temperature_sd
+        self._warmed_share = 0.5 * noise.thermometer_recovery_sd
         self._on_rail = aided.on_rail
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
+        self._coldest, self._warmest = within(noise.temperature_range, 0.0, LEAST_TEMPERATURE, MOST_TEMPERATURE)
         self._longest = jump(noise.head_rate)
         self._stamps = Stamps(self._longest)
         self._total_ends, self._static_ends = Conversions(self._longest), Conversions(self._longest)
         sd = sqrt(max(self._total_variance, self._static_variance))
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
-        total, static, self._warmth = limits(noise)
-        self._total_spikes, self._static_spikes = Spikes(total), Spikes(static)
-        self._rail, self._pause = RailCheck(noise, self._tare_end), pause(noise)
-        self._stroke, self._push_end, self._first_climb = StrokeTest(), PushEnd(), FirstClimb()
-        self._shock = Shock(noise.accelerometer_sd / sqrt(max(1.0, noise.accelerometer_rate / noise.head_rate)))
-        self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
-        self._heard, self._fresh, self._muted = [-inf, -inf, -inf], -inf, [False, False]
-        self._gated = inf  # s, from which on pressures alone are valid again after the filter has ended
+        self._total_spikes, self._static_spikes = Spikes(), Spikes()
+        self._watch_sensors(noise)
+        self._total_within = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._static_within = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
-        each = self._total_variance + (0.0 if noise.differential else self._static_variance)
-        self._onset = Onset(each, self._tare_end, settings.wind_sd)
+        self._wind, self._angles, self._head = RailWind(aided, noise.head), FlowAngles(aided), noise.head
+        self._wind_known = self._wind.declared or self._tare_end == -inf
+        self._wrong, self._throttle, self._position_share = not noise.head.none, 0.0, 0.0
+        self._position = noise.head.error / (1.0 - noise.head.error)
+        self._warmed = 0.2 * noise.thermometer_recovery
+        self._onset = Onset(self._pair_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
         self.ports = Ports(self._settings.aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
         self.flying = self._apart = False
         self._steps, self._read = 0, -inf
         self.time = self._t = -inf
-        self._tare, self._push_variance, self._steady_from = 0.0, 0.0, inf
-        self._u = self._w = 0.0
+        self._tare = self._plain_tare = 0.0
+        self._push_variance, self._steady_from = 0.0, inf
+        self._u = self._w = self._grown = 0.0
         self._lift = GRAVITY
         self.energy = self._begin(-inf)
+
+    def _watch_sensors(self, noise: NoiseModel) -> None:
+        """Make what watches the sensors beside the ports."""
+        self._rail, self._pause = RailCheck(noise, self._tare_end), pause(noise)
+        self._stroke, self._push_end, self._first_climb = StrokeTest(), PushEnd(), FirstClimb()
+        self._shock = Shock(noise.accelerometer_sd / sqrt(max(1.0, noise.accelerometer_rate / noise.head_rate)))
+        self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
+        self._heard, self._fresh, self._muted = [-inf, -inf, -inf], -inf, [False, False]
+        self._gated = inf  # s, from which on pressures alone are valid again after the filter has ended
 
     # -- readings ----------------------------------------------------------------------------------------------------
 
@@ -276,7 +298,7 @@ class AidedFilter(Estimator):
     def tidy(self) -> None:
         """Watch the ports by what was read last; the filter still stands where it stood then."""
         try:
-            self.ports.judge(self._t, self.energy, self.time, self._u)
+            self.ports.judge(self._t, self.energy, self.time, self._u + self._grown)
         except (ArithmeticError, ValueError):  # as in `step`
             self._fall_back(self._t, "diverged")
 
@@ -352,8 +374,14 @@ class AidedFilter(Estimator):
             self._fall_back(t, "diverged")
         self._rows.clear()
 
+    def throttle(self, t: float, value: float) -> None:
+        """Know what the propeller blows with."""
+        self._throttle = value
+
     def unfolding(self, t: float) -> None:
         """Trust the integral of f_x less for a while."""
+        if self._wind.on:
+            self._leave_rail()
         self._gained.bound(self._flight_force)
         self._unfolding.begin(t)
 
@@ -371,7 +399,8 @@ class AidedFilter(Estimator):
         energy, onset = self.energy, self._onset
         self._base = self.time, self._u, self._w
         if "total" in broken or "static" in broken:  # then nothing has been seen of the wind
-            onset.wind = 0.0
+            onset.know()
+            self._wind.forget()
             energy.restart(0.0, self._settings.wind_sd**2)
         for channel, kind in broken.items():
             if channel == "thermometer":
@@ -379,10 +408,10 @@ class AidedFilter(Estimator):
             self.ports.dead_at_rest(t, energy, channel, kind, (0.0, self._settings.wind_sd**2))
         self._stroke.begin(
             () if broken else self._channels(),
-            tare_end=self._tare_end,
+            tare_end=self._tare_end if self._noise.covered else -inf,
             end=start,
             variance=self._total_variance,
-            wind=most_wind(onset.wind, onset.sd, self._settings.wind_sd),
+            wind=most_wind(*self._start_wind),
             density=energy.p / self._air.gas,
         )
 
@@ -401,6 +430,7 @@ class AidedFilter(Estimator):
 
     def _not_risen(self, kind: str) -> None:
         """Flag the total port in the stroke. What it has told of the wind is void, and V is what the force gave."""
+        self._wind.forget()
         begun, _, w = self._base
         since, gained = self.time - begun, self._speed_since_launch()
         rest = self._rest_sd * since
@@ -427,20 +457,58 @@ class AidedFilter(Estimator):
         static = self._waiting.static.value
         known = LEAST_PRESSURE <= static <= MOST_PRESSURE
         self._tare, tare_variance = self._waiting.tare()
-        self._zero = self._tare + self._difference.zero
+        self._plain_tare = self._tare
         self._air.begin(self._waiting.temperature)
         self._unfolding.forget()
+        if not tare_variance > 0.0:
+            tare_variance = self._noise.difference_sd**2  # nobody has tared the pair
         rest = self._rest.result(start)
         self._rest_sd = rest[1]
-        speed_sd = self._onset.look(self._rows, start, (self._tare, tare_variance), static / self._air.gas)
+        at, density = (static, static / self._air.gas) if known else (airdata.STANDARD_PRESSURE, 0.0)
+        tied = 0.0
+        if self._wind_known:
+            along, along_sd, tare_variance, tied = self._look_at_wind(start, at, density, tare_variance)
+        else:
+            self._wind.forget()
+            along_sd = self._onset.look(self._on_the_rail(start), (self._tare, tare_variance), density)
+            along = self._onset.wind
+        self._start_wind = along, along_sd
         core = self._core(
-            speed=(self._onset.wind, speed_sd),
+            speed=(along, along_sd),
             rest=rest,
-            static=(static, AROUND) if known else (airdata.STANDARD_PRESSURE, ANYWHERE),
+            static=(at, AROUND if known else ANYWHERE),
             difference_sd=sqrt(tare_variance),
         )
+        core.tie_difference(tied)
         self._air.ground = core.p
+        self._angles.forget()
         return core
+
+    def _on_the_rail(self, end: float) -> tuple[float, float] | None:
+        """Return the pair's mean difference at rest until `end`, s, the head being open, and its variance."""
+        return rest_difference(self._rows, start=self._tare_end, end=end, each=self._pair_variance)
+
+    def _look_at_wind(
+        self, start: float, static: float, density: float, tare_variance: float
+    ) -> tuple[float, float, float, float]:
+        """Return u₀, its standard deviation, the variance of d and its covariance with u₀; see `rail_wind`."""
+        air, noise = self._air, self._noise
+        self._onset.know()
+        tared = noise.covered and self._tare_end > -inf
+        seen = self._on_the_rail(start)
+        if tared and seen is not None:
+            seen = seen[0] - self._tare, seen[1] + tare_variance
+        elif not tared and self._tare_end > -inf:
+            seen = self._waiting.tare()
+            seen = seen if seen[1] > 0.0 else None
+        gusts = air.gust * max(self._wind.speed_declared, SLOWEST) * AGO
+        along, sd, off, variance, tied = self._wind.begin(
+            seen, tared=tared, air=(static, air.heat, gusts), density=density
+        )
+        if tared or seen is None:
+            return along, sd, tare_variance, tied
+        self._tare = off
+        return along, sd, variance + noise.walk**2 * AGO, tied
 
     def _begin_in_flight(self, t: float) -> None:
         """Begin anew at `t`, s: V by the next total pressure, both ports believed, climb and bias not known."""
@@ -452,6 +520,8 @@ class AidedFilter(Estimator):
             difference_sd=sqrt(self._waiting.tare()[1]),
         )
         core.leave_rail(0.5 * aided.slope_rate**2 * aided.slope_time)
+        self._wind.forget()
+        self._angles.forget()
         self.energy, self._onset.wind = core, 0.0
         self._unfolding.forget()
         self._start(t - OLDEST, -inf, t + STEADY)
@@ -509,10 +579,13 @@ class AidedFilter(Estimator):
             return None
         ports, air, energy = self.ports, self._air, self.energy
         if ports.seen_total is not None or ports.seen_static is not None:
-            ports.judge(self._t, energy, self.time, self._u)
+            ports.judge(self._t, energy, self.time, self._u + self._grown)
         before, self._t = self._t, t
-        heard, given = self._heard, temperature
-        if self._warmth[0] < temperature < self._warmth[1]:
+        channel = self._difference.read(p_total, p_static) if self._differential else p_total
+        heard, given = self._heard, (channel, p_static, temperature)
+        if self._coldest <= temperature <= self._warmest:
+            if self._warmed > 0.0:
+                temperature /= 1.0 + 5.0 * self._warmed * energy.v * energy.v / air.heat
             if temperature != air.temperature:
                 air.warm(temperature)
             air.measured = True
@@ -520,26 +593,31 @@ class AidedFilter(Estimator):
         else:
             temperature = nan
         air.at(energy.p, energy.s)
+        low, high = self._total_within
+        if not low <= channel <= high:
+            channel = nan
+        low, high = self._static_within
+        if not low <= p_static <= high:
+            p_static = nan
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
-        channel = self._difference.read(p_total, p_static) if self._differential else p_total
         total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
-            ports.jumped(t, energy, (self.time, self._u), total == JUMPED, static == JUMPED)
+            ports.jumped(t, energy, (self.time, self._u + self._grown), total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
-        if new_total > 0:
-            heard[0] = t
-        if new_static > 0:
-            if self._first_climb.open:
-                self._climbed(p_static, heard[1])
-            heard[1] = t
+        if self._first_climb.open and new_static > 0:
+            self._climbed(p_static, heard[1])
+        heard[0] = t if new_total > 0 else heard[0]
+        heard[1] = t if new_static > 0 else heard[1]
         late = t - self._pause
-        if self._gained.newest < late or min(heard) < late or any(self._muted):
-            self._listen(t, late, (channel, p_static, given), (end_total, end_static))
+        if self._gained.newest < late or min(heard) < late or True in self._muted:
+            self._listen(t, late, given, (end_total, end_static))
         nis_total, nis_static = self._take(channel, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
         if total and static and temperature > 0.0:
-            excess = (p_total - self._tare - p_static) / p_static
+            difference = p_total - self._plain_tare - p_static
+            static_port = p_static - self._position * difference  # as the pressures alone have it (`paper`)
+            excess = (p_total - self._plain_tare - static_port) / static_port
             raw = isentropic_speed(excess, air.heat) if excess > 0.0 else 0.0
         return self._tell(t, raw, nis_total, nis_static)
 
@@ -548,7 +626,7 @@ class AidedFilter(Estimator):
 
         Pressures come back by themselves, when they agree (`readmission`).
         """
-        ports, now = self.ports, (self.time, self._u)
+        ports, now = self.ports, (self.time, self._u + self._grown)
         for channel, heard, value, end in zip(("total", "static"), self._heard, values, ends, strict=False):
             if heard < late:
                 kind = "silent" if end != end else "range" if value == value else "invalid"
@@ -598,14 +676,19 @@ class AidedFilter(Estimator):
             self._push_variance = energy.know_push()
         gained, variance = self._go(to, dt)
         pushed = self._pushed(t_total)
-        tared = p_total - self._zero - self._noise.acceleration * pushed
+        tared = p_total - self._tare - self._difference.zero - self._noise.acceleration * pushed
+        unknown = 0.0
+        if self._wrong:
+            self._angles.lift = self._lift
+            above, off, unknown = self._off()
+            tared, p_static = tared - above + (off if self._differential else 0.0), p_static - off
         nis_static, nis_total = energy.fly(
             dt,
             gained,
             variance,
             density,
             p_static,
-            self._static_variance,
+            self._static_variance + unknown,
             density * energy.v * (to - at),
             tared - pushed * energy.k,
             self._total_variance + pushed * pushed * self._push_variance,
@@ -642,14 +725,25 @@ class AidedFilter(Estimator):
 
     def _go(self, to: float, dt: float) -> tuple[float, float]:
         """Go on to a later time; return ∫ f_x dt, m/s, and the variance that gust and accelerometer add to V's."""
-        v = self.energy.v
+        wind = self._wind
+        v = self.energy.v if not wind.on else wind.speed(self.energy.v)
         u, w = self._gained.at(to)
         gained = u - self._u
         self._force = gained / dt - self._rest.mean
         if self._steady_from == inf:
             self._push_end.add(to, self._force, dt)
             self._steady_from = self._push_end.steady_from
+        if self._air.growth:
+            grown = self._air.growth * (wind.gained(self.energy.v) if wind.on else v) * dt
+            gained += grown
+            self._grown += grown
         variance = self._air.gust * (v if v > SLOWEST else SLOWEST) * dt
+        if wind.on:
+            wind.advance(dt, variance, self.energy)
+            if self._force > self._on_rail:
+                wind.pushed = True
+            elif wind.pushed or to > self._onset.patience:
+                self._leave_rail()
         if w > self._w:  # else readings have come late, and w has counted already that they might be lost
             variance = variance + w - self._w
             if self._gained.torn(w - self._w, dt):
@@ -671,40 +765,60 @@ class AidedFilter(Estimator):
         ahead = self.time - at
         if not -OLDEST < ahead < OLDEST:
             return nan
+        noise = self._static_variance
+        if self._wrong:
+            _, off, unknown = self._off()
+            noise += unknown
+            if not self._wind.on:
+                reading -= off
         if ports.static.faulty:
             ports.hear_static(self._t, energy, at, reading, reading - energy.p - density * energy.v * ahead * energy.s)
             return nan
-        nis = energy.static(reading, self._static_variance, density * energy.v * ahead)
+        if self._wind.on:
+            nis = self._wind.static(energy, reading, noise, density * energy.v * ahead, self._air.heat)
+        else:
+            nis = energy.static(reading, noise, density * energy.v * ahead)
         ports.misses = 0 if energy.taken else ports.misses + 1
         if self.time > self._steady_from:
             ports.seen_static = reading, at, self._lift
         elif ports.misses >= PERSISTENT:  # these are no spikes, and it is too early for a fault: the filter is wrong
             energy.widen_static(energy.innovation * energy.innovation)
-            energy.static(reading, self._static_variance, 0.0)
+            energy.static(reading, noise, 0.0)
             ports.misses = 0
         return nis
+
+    def _shut_in_stroke(self, reading: float) -> bool:
+        """Judge by a total pressure, Pa, whether it rises in the stroke; flag the port if it does not."""
+        pushed, noise = self._force, self._noise
+        kind = self._stroke.add(
+            reading - noise.acceleration * pushed,
+            self._static_spikes.last,
+            self._speed_since_launch(),
+            noise.acceleration_sd * pushed,
+        )
+        if kind:
+            self._not_risen(kind)
+        return bool(kind)
+
+    def _of_channel(self, channel: float) -> tuple[float, float, float]:
+        """Return what the total channel says, Pa, the variance of its noise, Pa², and what it is relative to, Pa."""
+        if not self._differential:
+            return channel, self._total_variance, 0.0
+        difference = channel - self._difference.zero
+        if self.ports.static.shut:  # to both sensors: the pressure that is shut in and Δp are the total pressure
+            return difference + self._difference.static, self._total_variance + self._static_variance, 0.0
+        return difference, self._total_variance, self.energy.p
 
     def _take_total(self, reading: float, end: float) -> float:
         energy, air = self.energy, self._air
         behind = self.time - (end - self._total_age)
         if behind > OLDEST:
             return nan
-        if self._stroke.open and not self.ports.total.faulty:
-            pushed = self._force
-            rested = reading - self._noise.acceleration * pushed
-            unknown = self._noise.acceleration_sd * pushed
-            kind = self._stroke.add(rested, self._static_spikes.last, self._speed_since_launch(), unknown)
-            if kind:
-                self._not_risen(kind)
-                return nan
-        read, each, base = reading, self._total_variance, 0.0  # as it came; its variance; what it is relative to, Pa
-        if self._differential:
-            if self.ports.static.shut:  # to both sensors
-                reading, each = reading + self._difference.static, each + self._static_variance
-            else:
-                base = energy.p
+        if self._stroke.open and self._shut_in_stroke(reading):
+            return nan
+        read, (reading, each, base) = reading, self._of_channel(reading)
         onset = self._onset
-        if not onset.settled and not onset.settle(energy, self.time, reading - self._zero + base, air):
+        if not onset.settled and not onset.settle(energy, self.time, reading - self._tare + base, air):
             return nan
         pushed = self._pushed(end)
         variance = each + pushed * pushed * self._push_variance
@@ -712,21 +826,48 @@ class AidedFilter(Estimator):
             slope = air.density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * air.gust * abs(energy.v) * behind
-        tared = reading - self._zero - self._noise.acceleration * pushed
+        tared = reading - self._tare - self._noise.acceleration * pushed
+        if self._wrong and not self._wind.on:
+            above, off, _ = self._off()
+            tared -= above - off if base else above
         if self.ports.total.faulty:
             self.ports.hear_total(self._t, energy, end, read, tared + base, variance)
             return nan
-        nis = energy.total(tared, variance, pushed, air.heat)
+        on_rail = self._wind.on
+        if on_rail:
+            nis = self._wind.total(energy, tared, variance, pushed, air.heat, relative=base > 0.0)
+        else:
+            nis = energy.total(tared, variance, pushed, air.heat)
         if energy.taken:
             self._fresh = self._t
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.widen_speed((energy.innovation / slope) ** 2)
-        if energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
+        if not on_rail and energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
             self.ports.seen_total = read, tared + (energy.p if base else 0.0), nis
         return nis
+
+    def _leave_rail(self) -> None:
+        """Be told that the push is over: from here on the filter's airspeed is along the path."""
+        self._wind.leave(self.energy)
+        self._angles.leave(self.time, self._wind.side)
+
+    def _off(self) -> tuple[float, float, float]:
+        """What both ports are off by in flight, Pa: total, static; and the variance of what is not known, Pa²."""
+        energy, air, head, angles = self.energy, self._air, self._head, self._angles
+        v, p = energy.v, energy.p
+        impact = isentropic(v, p, air.heat) - p
+        side2, side2_sd = angles.side(self.time, v)
+        down, down_sd = angles.down(v, air.density)
+        across = side2 + down * down
+        total, static = head.shares(
+            sqrt(1.0 - across) if across < 1.0 else 0.0, sqrt(side2), down, 5.0 * v * v / air.heat, self._throttle
+        )
+        share = head.spread(side2, side2_sd, down, down_sd, self._throttle)
+        self._position_share = 0.5 * share
+        return impact * (total - 1.0), impact * static, (impact * share) ** 2
 
     def _pushed(self, end: float) -> float:
         """Specific force over the total pressure's conversion that ends then; a change of it widens b."""
@@ -749,6 +890,8 @@ class AidedFilter(Estimator):
         else:
             dt, u, w = 0.0, self._u, self._w
         speed, variance, static = energy.foretell(dt, u - self._u, air.density)
+        if self._wind.on:
+            speed, variance = self._wind.told(speed, variance)
         variance += air.gust * (energy.v if energy.v > SLOWEST else SLOWEST) * dt + w - self._w
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, t)
@@ -759,12 +902,20 @@ class AidedFilter(Estimator):
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
         variance += self.ports.between
-        share, scale = self._temperature_share * speed / air.temperature, self._scale_share * speed
+        share = self._temperature_share * speed / air.temperature
+        if self._wrong:
+            position = self._position_share * speed
+            share = sqrt(share * share + position * position)
+        if self._warmed_share > 0.0:
+            warmed = self._warmed_share * speed * speed / air.heat * speed
+            share = sqrt(share * share + warmed * warmed)
+        scale = self._scale_share * speed
         sd = sqrt(max(variance, 0.0) + share * share + scale * scale)
         total = isentropic(speed, static, air.heat)
         ports = self.ports
         valid = (
             VALID * sd <= speed <= self._fastest
+            and speed * speed <= LAW_ENDS * air.heat
             and air.measured
             and (sd < COASTED or (t - self._fresh < FRESH and not ports.total.faulty))
             # without it V and the climb are hardly told apart, but for a difference that has been read

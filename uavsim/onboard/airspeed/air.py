@@ -7,7 +7,7 @@ vapour that is known of.
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR, STANDARD_TEMPERATURE
 from uavsim.onboard.airspeed.energy import SEVEN_R
 from uavsim.onboard.airspeed.energy_model import isentropic_speed
-from uavsim.onboard.airspeed.gust import GRAVITY, gust_density, shear_density
+from uavsim.onboard.airspeed.gust import GRAVITY, growth, gust_density, shear_density
 from uavsim.onboard.airspeed.settings import AidedSettings
 
 SLOWEST = 1.0  # m/s; below it the gust's correlation time is that of this airspeed
@@ -39,6 +39,8 @@ class Air:
         2 σ²/L of the gusts, with the growth of the mean wind in a climb, m/s².
     shear : float
         The latter alone, m/s².
+    growth : float
+        By which share of itself the airspeed grows in a climb into a wind that is known, 1/s.
     ground : float
         Static pressure at the launch, Pa; NaN while it is not known.
     """
@@ -51,6 +53,7 @@ class Air:
         "density",
         "gas",
         "ground",
+        "growth",
         "gust",
         "heat",
         "measured",
@@ -60,7 +63,8 @@ class Air:
 
     def __init__(self, aided: AidedSettings, calibration: float, lightness: float = 1.0) -> None:
         self._aided, self._calibration, self._lightness = aided, calibration, lightness
-        self._falls = (aided.gust_height > 0.0 and aided.gust_sd > 0.0) or aided.shear > 0.0
+        self._falls = (aided.gust_height > 0.0 and aided.gust_sd > 0.0) or aided.shear > 0.0 or bool(aided.shear_along)
+        self.growth = 0.0
         self.gust, self.shear = gust_density(aided, 0.0), 0.0
         self.ground = self.density = float("nan")
         self.begin(0.0)
@@ -82,6 +86,7 @@ class Air:
             height = (self.ground - static) / (GRAVITY * self.density)
             self.shear = shear_density(self._aided, height, slope)
             self.gust = gust_density(self._aided, height) + self.shear
+            self.growth = growth(self._aided, height, slope)
 
     def speed(self, total: float, static: float) -> float:
         """Return the airspeed of two pressures, Pa; 0 if the total pressure is not above the static one."""

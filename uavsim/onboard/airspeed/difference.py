@@ -9,11 +9,18 @@ taken off the channel to have Δp, or p_t of an absolute sensor, is its `zero`.
 from math import nan
 
 from uavsim.airdata import STANDARD_PRESSURE
+from uavsim.onboard.airspeed.interface import NoiseModel
 
 ZERO = STANDARD_PRESSURE  # Pa: well inside of what a pressure may be, whatever the sign of the difference
 # 1/Pa. The sum in the row has rounded Δp by up to 2⁻³⁷ Pa. Rounded to 2⁻²⁰ Pa a repeated reading is the same number
 # again, and no part has such a fine step
 FINE = 2.0**20
+
+
+def channel_range(noise: NoiseModel) -> tuple[float, float]:
+    """Return between which values of the total channel the sensor's range lies, Pa."""
+    low, high = noise.total_range
+    return (low + ZERO, high + ZERO) if noise.differential else (low, high)
 
 
 class Difference:

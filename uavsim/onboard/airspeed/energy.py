@@ -5,8 +5,29 @@ stand the start, and everything else that changes a variance: the estimator and 
 happened, by a method of that name, and only the filter writes to its covariance.
 """
 
+from dataclasses import dataclass
+
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed.energy_model import B, D, EnergyModel, K, P, S, V, covariance_at_rest
+
+
+@dataclass(slots=True)
+class Beside:
+    """A quantity c that stays as it is beside the state: its value, its variance, its covariances with the state."""
+
+    value: float = 0.0
+    variance: float = 0.0
+    of_v: float = 0.0
+    of_b: float = 0.0
+    of_p: float = 0.0
+    of_s: float = 0.0
+    of_d: float = 0.0
+    of_k: float = 0.0
+
+    def advance(self, dt: float) -> None:
+        """Be told that the state has been predicted by so much, s: v has taken b and s."""
+        self.of_v -= dt * (self.of_b + self.of_s)
+
 
 SEVEN_R = 7.0 * GAS_CONSTANT_DRY_AIR  # J/(kg·K): 2·c_p, v²/(7·R·T) = (γ − 1)/2·M²
 
@@ -94,6 +115,89 @@ class EnergyFilter(EnergyModel):
         """Forget the airspeed for another, m/s, of the given variance, m²/s²."""
         self.v, self.vv = speed, variance
         self.vb = self.vp = self.vs = self.vd = self.vk = 0.0
+
+    def turn(self, speed: float, variance: float, x: float, y: float, beside: Beside) -> None:
+        """Be told that the airspeed is along another path, m/s, with this variance, m²/s²: V = x v + y c."""
+        self.v, self.vv = speed, variance
+        self.vb = x * self.vb + y * beside.of_b
+        self.vp = x * self.vp + y * beside.of_p
+        self.vs = x * self.vs + y * beside.of_s
+        self.vd = x * self.vd + y * beside.of_d
+        self.vk = x * self.vk + y * beside.of_k
+
+    def tie_difference(self, covariance: float) -> None:
+        """Know that d goes with the airspeed at the start, by a covariance, Pa·m/s."""
+        self.vd = covariance
+
+    def total_of_two(
+        self, above: float, variance: float, pushed: float, slopes: tuple[float, float], beside: Beside
+    ) -> float:
+        """Take a total pressure that depends on v and on a quantity beside the state, which is corrected, too.
+
+        Parameters
+        ----------
+        above : float
+            By how much the reading, tared and freed of the known error, is above what the port reads of v and of the
+            quantity at p, Pa.
+        variance, pushed : float
+            As of `total`.
+        slopes : tuple of float
+            Derivatives of what the port reads, by v and by the quantity.
+        beside : Beside
+
+        Returns
+        -------
+        float
+            Normalised innovation squared.
+        """
+        hv, hc = slopes
+        c = beside
+        hp = 1.0 - self._relative
+        gv = hv * self.vv + hp * self.vp + self.vd + pushed * self.vk + hc * c.of_v
+        gb = hv * self.vb + hp * self.bp + self.bd + pushed * self.bk + hc * c.of_b
+        gp = hv * self.vp + hp * self.pp + self.pd + pushed * self.pk + hc * c.of_p
+        gs = hv * self.vs + hp * self.ps + self.sd + pushed * self.sk + hc * c.of_s
+        gd = hv * self.vd + hp * self.pd + self.dd + pushed * self.dk + hc * c.of_d
+        gk = hv * self.vk + hp * self.pk + self.dk + pushed * self.kk + hc * c.of_k
+        gc = hv * c.of_v + hp * c.of_p + c.of_d + pushed * c.of_k + hc * c.variance
+        spread = hv * gv + hp * gp + gd + pushed * gk + hc * gc + variance
+        return self._correct_two(above - self.d - pushed * self.k, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
+
+    def static_of_two(self, reading: float, variance: float, ahead: float, slope: float, beside: Beside) -> float:
+        """Take a static pressure as `static`; its derivative by the quantity beside the state is `slope`."""
+        c = beside
+        gv = self.vp + ahead * self.vs + slope * c.of_v
+        gb = self.bp + ahead * self.bs + slope * c.of_b
+        gp = self.pp + ahead * self.ps + slope * c.of_p
+        gs = self.ps + ahead * self.ss + slope * c.of_s
+        gd = self.pd + ahead * self.sd + slope * c.of_d
+        gk = self.pk + ahead * self.sk + slope * c.of_k
+        gc = c.of_p + ahead * c.of_s + slope * c.variance
+        innovation, spread = reading - self.p - ahead * self.s, gp + ahead * gs + slope * gc + variance
+        return self._correct_two(innovation, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
+
+    def _correct_two(
+        self,
+        innovation: float,
+        spread: float,
+        g: tuple[float, float, float, float, float, float],
+        gc: float,
+        beside: Beside,
+    ) -> float:
+        """Correct state and quantity by an innovation; g and gc are their covariances with it."""
+        nis = self._correct(innovation, spread, *g)
+        if self.taken:
+            gain = gc / spread
+            beside.value += gain * innovation
+            beside.variance -= gain * gc
+            gv, gb, gp, gs, gd, gk = g
+            beside.of_v -= gain * gv
+            beside.of_b -= gain * gb
+            beside.of_p -= gain * gp
+            beside.of_s -= gain * gs
+            beside.of_d -= gain * gd
+            beside.of_k -= gain * gk
+        return nis
 
     def shift_speed(self, change: float) -> None:
         """Move the airspeed, m/s, which is known as well as before."""

@@ -8,15 +8,18 @@ walk of density 2 σ² V/L. At low altitude (MIL-F-8785C, h in feet)
 From 1000 ft down to 10 ft, where the law ends, this is 1/h times a factor that falls from 1.0 to 0.5. So the filter
 believes σ and L at one height, and takes the density to go as 1/h.
 
-In a climb the mean wind changes with the height, too: dW/dh = w/h where it goes with ln h, from a side that is not
-known. So the airspeed wanders by a variance of w² |ḣ|/h a second, which comes to w² while the height doubles about.
-With ḣ = V s/g, s = g sin γ, that is a density of w² |s|/(g h) beside that of the turbulence; none in level flight.
+In a climb the mean wind changes with the height, too: dW/dh = w/h where it goes with ln h. What is declared of it along
+the path makes the airspeed grow by w ḣ/h, with ḣ = V s/g and s = g sin γ. What is not known of w, from which side the
+aircraft flies into it and how the wind grows in this place, makes the airspeed wander by a variance of w² |ḣ|/h a
+second, which comes to w² while the height doubles about: a density of w² |s|/(g h) beside that of the turbulence; none
+in level flight.
 """
 
 from uavsim.onboard.airspeed.settings import AidedSettings
 
 GRAVITY = 9.80665  # m/s², ISO 80000-3
 
+LOWEST_CLIMB = 1.0  # m above the ground, below which no aircraft climbs
 LOWEST = 3.05  # m: 10 ft, MIL-F-8785C; below it the turbulence is as there
 
 
@@ -32,3 +35,9 @@ def gust_density(aided: AidedSettings, height: float) -> float:
 def shear_density(aided: AidedSettings, height: float, slope: float) -> float:
     """Density that the mean wind's growth has in a climb of g sin γ = `slope`, m/s², at a height, m; in m/s²."""
     return aided.shear * aided.shear * abs(slope) / (GRAVITY * (height if height > LOWEST else LOWEST))
+
+
+def growth(aided: AidedSettings, height: float, slope: float) -> float:
+    """How fast the airspeed grows in a climb of g sin γ = `slope`, m/s², at a height above the launch, m: V̇/V, 1/s."""
+    height += aided.launch_height
+    return aided.shear_along * slope / (GRAVITY * (height if height > LOWEST_CLIMB else LOWEST_CLIMB))

@@ -11,9 +11,11 @@ from typing import Annotated
 
 from annotated_types import Ge, Interval
 
+from uavsim.onboard.airspeed.head_errors import HeadErrors
 from uavsim.onboard.plausible import LEAST_TEMPERATURE, MOST_TEMPERATURE
 
 ANY = (-inf, inf)  # a range without ends
+NO_ERRORS = HeadErrors()  # both ports read their own pressures
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +82,12 @@ class NoiseModel:
         Roll of the aircraft on it, rad.
     difference_sd : float
         What the pair's difference may be at rest where no tare has found it, Pa.
+    covered : bool
+        Whether the head is under its cover in the tare's window; else the tare is taken in the wind.
+    head : HeadErrors
+        What the ports are off by, as a calibration knows it.
+    thermometer_recovery, thermometer_recovery_sd : float
+        Share r of the flow's warming that the thermometer reads, T (1 + 0.2 r M²), and its standard deviation.
     differential : bool
         Whether the total pressure is the sum of the static one and of a difference that one sensor reads. Then
         `total_sd`, `total_range` and `total_step` are those of the difference.
@@ -123,5 +131,24 @@ class NoiseModel:
     rail_elevation_sd: Annotated[float, Interval(ge=0.0, le=1.6)] = 0.0087
     rail_roll: Annotated[float, Interval(ge=-3.2, le=3.2)] = 0.0
     difference_sd: Annotated[float, Ge(0.0)] = 0.0
+    covered: bool = True
+    head: HeadErrors = NO_ERRORS
+    thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
+    thermometer_recovery_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     differential: bool = False
     difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
+
+
+def within(ends: tuple[float, float], step: float, least: float, most: float) -> tuple[float, float]:
+    """Return between which readings something has been measured: within the part's ends, and plausible.
+
+    Parameters
+    ----------
+    ends : tuple of float
+        Of the part's range; a reading there, or less than half a step away, has been clipped.
+    step : float
+        By which readings are rounded.
+    least, most : float
+        What is plausible at all (`uavsim.onboard.plausible`).
+    """
+    return max(least, ends[0] + 0.5 * step), min(most, ends[1] - 0.5 * step)

@@ -37,8 +37,8 @@ from collections.abc import Callable
 from math import inf, isnan, nan, sqrt
 
 from uavsim import airdata
-from uavsim.onboard.airspeed.difference import Difference
-from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.difference import Difference, channel_range
+from uavsim.onboard.airspeed.interface import NoiseModel, within
 from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.random_walk import Channel, RandomWalk, process_noise
 from uavsim.onboard.airspeed.settings import EstimatorSettings
@@ -48,6 +48,9 @@ from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, LEAST_TEMPERATURE,
 from uavsim.onboard.stamps import Conversions, Stamps, jump
 
 FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the clipped root
+# Mach number beyond which no airspeed is valid: the relation of the pressures holds to Mach 1, but from here on shocks
+# stand about a probe and its static holes. By hand, within the usual 0.9 … 0.98
+TRANSONIC = 0.95
 VALID = 2.0  # V*; from here on the airspeed is called valid
 
 
@@ -67,18 +70,22 @@ class PaperFilter(Estimator):
 
     Notes
     -----
-    A reading that is NaN or implausible is missing. A missing pressure lets that channel's variance grow; a missing
+    A reading that is NaN, implausible or at the end of the part's range is missing; in the last case no airspeed is
+    valid. A missing pressure lets that channel's variance grow; a missing
     temperature leaves the last one in use. Without a reading in its window the tare is 0. After a step of the clock
     both filters begin anew. Filtered pressures that are implausible have no airspeed, and an airspeed above
     `EstimatorSettings.fastest` is not valid.
     """
 
     __slots__ = (
+        "_clipped",
         "_compressible",
         "_cover",
         "_difference",
         "_fastest",
         "_heating",
+        "_law_ends",
+        "_position",
         "_relation",
         "_relative",
         "_scale",
@@ -87,6 +94,7 @@ class PaperFilter(Estimator):
         "_star",
         "_static",
         "_static_ends",
+        "_static_ends_at",
         "_t",
         "_tare",
         "_tare_variance",
@@ -95,6 +103,7 @@ class PaperFilter(Estimator):
         "_temperature_share",
         "_total",
         "_total_ends",
+        "_total_ends_at",
         "_wind_sd",
         "lightness",
     )
@@ -120,6 +129,11 @@ class PaperFilter(Estimator):
         self._temperature_share = 0.5 * noise.temperature_sd
         self._wind_sd = settings.wind_sd
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
+        self._total_ends_at = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._static_ends_at = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._clipped = False
+        self._position = noise.head.error / (1.0 - noise.head.error)
+        self._law_ends = TRANSONIC**2 * airdata.GAMMA * airdata.GAS_CONSTANT_DRY_AIR * scale_squared
         self._t = -inf
         longest = jump(noise.head_rate)
         self._stamps, self._total_ends, self._static_ends = Stamps(longest), Conversions(longest), Conversions(longest)
@@ -167,10 +181,11 @@ class PaperFilter(Estimator):
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total, end_static == end_static  # not NaN
         reading = self._difference.read(p_total, p_static)
-        if not LEAST_PRESSURE <= reading <= MOST_PRESSURE:
-            reading = p_total = nan
-        if not LEAST_PRESSURE <= p_static <= MOST_PRESSURE:
-            p_static = nan
+        reading, clipped = _measured(reading, *self._total_ends_at)
+        if reading != reading:
+            p_total = nan
+        p_static, clipped_too = _measured(p_static, *self._static_ends_at)
+        self._clipped = clipped or clipped_too
         if new_total:
             self._total.add(reading)
         if new_static:
@@ -183,17 +198,20 @@ class PaperFilter(Estimator):
         covered = self._taring is not None and self._tared(t, p_total - p_static, new_total, new_static)
 
         tare = self._tare
-        raw = self._scale * self._relation(p_total - tare, p_static, temperature) if measured else nan
+        below = self._position * (p_total - tare - p_static)
+        raw = self._scale * self._relation(p_total - tare, p_static - below, temperature) if measured else nan
         total, static = self._total.value - tare, self._static.value
         if self._relative:
             total += static - self._difference.zero
+        if self._position:  # the static port's share is taken off, at any airspeed the same
+            static -= self._position * (total - static)
         known = LEAST_PRESSURE <= static <= MOST_PRESSURE
         speed = self._scale * self._relation(total, static, self._temperature) if known else nan
         nis_total, nis_static = self._total.nis if new_total else nan, self._static.nis if new_static else nan
         if covered or isnan(speed):
             return t, 0.0, self._wind_sd, raw, total, static, False, nis_total, nis_static
         sd, valid = self._spread(speed, total / static, static)
-        return t, speed, sd, raw, total, static, valid, nis_total, nis_static
+        return t, speed, sd, raw, total, static, valid and not self._clipped, nis_total, nis_static
 
     def _tared(self, t: float, difference: float, new_total: bool, new_static: bool) -> bool:
         """Take the difference of a reading into the tare, Pa, or end it; return whether the head is covered."""
@@ -223,7 +241,8 @@ class PaperFilter(Estimator):
         sd = sqrt(pressure_share * pressure_share + temperature_share * temperature_share + scale_share * scale_share)
         if speed < star and sd > self._wind_sd:
             sd = self._wind_sd
-        return sd, VALID * star <= speed <= self._fastest
+        subsonic = speed * speed <= self._law_ends * temperature
+        return sd, VALID * star <= speed <= self._fastest and subsonic
 
     def restart(self) -> None:
         """Know nothing of the pressures, but their tare."""
@@ -270,3 +289,10 @@ class PaperFilter(Estimator):
     def tare(self) -> tuple[float, float]:
         """Return the pair's tare, Pa, and its variance, Pa², by now."""
         return (self._tare, self._tare_variance) if self._taring is None else self._taring.result()
+
+
+def _measured(pressure: float, low: float, high: float) -> tuple[float, bool]:
+    """Return a pressure, NaN where it is none, and whether it has been clipped at an end of the range, Pa."""
+    if low <= pressure <= high:
+        return pressure, False
+    return nan, LEAST_PRESSURE <= pressure <= MOST_PRESSURE

@@ -12,7 +12,7 @@ live one does not move either. That is for the stroke (`stroke`).
 
 from math import hypot, inf, isfinite, nan, sqrt
 
-from uavsim.onboard.airspeed.difference import ZERO
+from uavsim.onboard.airspeed.difference import ZERO, channel_range
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row
@@ -35,9 +35,7 @@ WORDS = {
 
 def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
     """Return between which values a total channel, a static pressure, Pa, and a temperature, K, is a measurement."""
-    (a, b), (c, d), (e, f) = noise.total_range, noise.static_range, noise.temperature_range
-    if noise.differential:
-        a, b = a + ZERO, b + ZERO
+    (a, b), (c, d), (e, f) = channel_range(noise), noise.static_range, noise.temperature_range
     return (
         (max(a, LEAST_PRESSURE), min(b, MOST_PRESSURE)),
         (max(c, LEAST_PRESSURE), min(d, MOST_PRESSURE)),

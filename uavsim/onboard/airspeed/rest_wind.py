@@ -28,10 +28,8 @@ STRONGEST = 60.0
 Row = tuple[float, float, float, float, float, float]
 
 
-def wind_at_rest(
-    rows: Iterable[Row], *, start: float, end: float, tare: float, variance: float, each: float, density: float
-) -> tuple[float, float]:
-    """Return the airspeed on the rail and its standard deviation, m/s; 0 and infinity if nothing was read.
+def rest_difference(rows: Iterable[Row], *, start: float, end: float, each: float) -> tuple[float, float] | None:
+    """Return the pair's mean difference on the rail, Pa, and the variance of its noise, Pa²; None for too few.
 
     Parameters
     ----------
@@ -39,12 +37,8 @@ def wind_at_rest(
         Readings of the head.
     start, end : float
         Conversions that end between them count, s; the head is uncovered from `start` on.
-    tare, variance : float
-        Of the pair, Pa and Pa².
     each : float
         Variance of one reading's difference, Pa².
-    density : float
-        Of the air, kg/m³.
     """
     differences, last = Majority(each), -inf
     for _, p_total, p_static, _, t_total, t_static in rows:
@@ -54,9 +48,24 @@ def wind_at_rest(
         if LEAST_PRESSURE <= p_total <= MOST_PRESSURE and LEAST_PRESSURE <= p_static <= MOST_PRESSURE:
             differences.add(p_total - p_static)
     total, count = differences.most.sum, differences.most.count
-    if count < FEWEST or not density > 0.0:
+    return None if count < FEWEST else (total / count, each / count)
+
+
+def wind_at_rest(seen: tuple[float, float] | None, tare: float, variance: float, density: float) -> tuple[float, float]:
+    """Return the airspeed on the rail and its standard deviation, m/s; 0 and infinity if nothing was read.
+
+    Parameters
+    ----------
+    seen : tuple of float or None
+        As of `rest_difference`.
+    tare, variance : float
+        Of the pair, Pa and Pa².
+    density : float
+        Of the air, kg/m³.
+    """
+    if seen is None or not density > 0.0:
         return 0.0, inf
-    difference, sigma = total / count - tare, sqrt(each / count + variance)
+    difference, sigma = seen[0] - tare, sqrt(seen[1] + variance)
     square = 2.0 * sigma / density
     wind = sqrt(2.0 * difference / density) if difference > 0.0 else 0.0
     if wind > STRONGEST:

@@ -24,8 +24,12 @@ class AidedSettings:
     gust_height : float
         Height above the launch at which these hold, m; the gust's density is as 1/height; 0: they hold everywhere.
     shear : float
-        How fast the mean wind grows with the logarithm of the height, dW/d(ln h), m/s: so much more may the airspeed
-        wander in a climb; 0: not at all.
+        How far it is unknown how fast the mean wind along the path grows with the logarithm of the height, m/s: so much
+        more may the airspeed wander in a climb; 0: not at all.
+    shear_along : float
+        What is known of that, dW/d(ln h) of the headwind, m/s: so much does the airspeed grow in a climb.
+    launch_height : float
+        Of the aircraft above the ground at the launch, m.
     slope_rate : float
         How fast the climb's share of gravity, g·sin γ, wanders in flight, (m/s²)/√s.
     slope_time : float
@@ -50,6 +54,16 @@ class AidedSettings:
     flight_force : float or None
         The greatest specific force along an axis with the wings out, m/s²: a reading beyond it is a missing one. None:
         6 g, on a rig what an accelerometer reads at all.
+    rail_wind_along, rail_wind_side, rail_wind_down : float
+        The mean wind past the aircraft on its rail as it is declared, body axes, m/s: a headwind, from the right, and
+        from below.
+    rail_wind_sd : float
+        Standard deviation of each, m/s: turbulence, and what a declared wind is off by; 0: no wind is declared.
+    lift_slope : float
+        a of α = a n/(ρ V²) + α₀ with the wings out, n being −f_z, kg/m²: mass over half the wing's area and the slope
+        of its lift; 0: the angle of attack is not known. That of fw8, by regression on four of its flights.
+    lift_zero : float
+        α₀, rad.
     replay : float
         How long before its recognition a launch is replayed from, s; it has to begin on the rail.
     """
@@ -59,6 +73,8 @@ class AidedSettings:
     gust_length: Annotated[float, Interval(gt=1.0, le=5000.0)] = 200.0
     gust_height: Annotated[float, Interval(ge=0.0, le=5000.0)] = 0.0
     shear: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.0
+    shear_along: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
+    launch_height: Annotated[float, Interval(gt=0.0, le=5000.0)] = 1.5
     slope_rate: Annotated[float, Interval(gt=0.0, le=50.0)] = 0.7
     slope_time: Annotated[float, Interval(gt=0.1, le=1000.0)] = 5.0
     bias_sd: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.3
@@ -69,6 +85,12 @@ class AidedSettings:
     unfolding_time: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.35
     unfolding_rate: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
     flight_force: Annotated[float, Interval(gt=0.0, le=MOST_FORCE)] | None = None
+    rail_wind_along: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
+    rail_wind_side: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
+    rail_wind_down: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
+    rail_wind_sd: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.0
+    lift_slope: Annotated[float, Interval(ge=0.0, le=1000.0)] = 9.45
+    lift_zero: Annotated[float, Interval(ge=-0.5, le=0.5)] = -0.0695
     replay: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.3
 
 

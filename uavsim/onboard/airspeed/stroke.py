@@ -13,7 +13,7 @@ A pressure that has risen by half of r lives, and the test is over.
 """
 
 from collections.abc import Iterable
-from math import inf, sqrt
+from math import sqrt
 
 from uavsim.onboard.airspeed.rest_wind import OPENED, Row
 
@@ -21,7 +21,7 @@ SURE = 15.0  # standard deviations of a reading, by which a live one must have r
 AGREED = 5  # readings in a row that decide, so that no spike does
 SHUT, LIVE = 0.25, 0.5  # of r, below which a port is shut, and above which it lives
 FEWEST = 3  # readings at rest; fewer say nothing of the pressure there
-DEVIATIONS = 3.0  # of the wind
+DEVIATIONS, MOST_WIND = 3.0, 9.0  # of the wind; m/s, of what is not known, or no stroke would decide. By hand
 
 
 class StrokeTest:
@@ -115,6 +115,6 @@ class StrokeTest:
         return "swapped" if swapped else "frozen"
 
 
-def most_wind(wind: float, sd: float, otherwise: float) -> float:
-    """Return w⁺, m/s, of the wind that was seen, its standard deviation, and that where nothing was seen."""
-    return wind + DEVIATIONS * (sd if sd < inf else otherwise)
+def most_wind(wind: float, sd: float) -> float:
+    """Return w⁺, m/s, of the wind along the launch that is believed, either sign, and its standard deviation."""
+    return min(abs(wind) + DEVIATIONS * sd, MOST_WIND)

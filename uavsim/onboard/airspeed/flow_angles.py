@@ -1,0 +1,81 @@
+"""From where the air comes past the head, as far as it is known on board, which has no vane.
+
+**Angle of attack.** With the wings out lift is −f_z, and with n the mean of −f_z
+
+    α = a n/(ρ V²) + α₀
+
+a and α₀ are the aircraft's, of a lift curve that is straight. Folded wings lift little, and α is small and not known.
+
+**Sideslip.** The rail is left with that of the side wind, β₀. The aircraft then swings into the wind: y = sin β
+is counted as a normal number of mean 0 and of the variance y₀² e^(−2 t/τ) + y_g², so y² has that for its mean and √2
+times it for its standard deviation; y_g is what turbulence makes, σ/V.
+"""
+
+from math import exp
+
+from uavsim.onboard.airspeed.settings import AidedSettings
+
+SWING = (
+    1.5  # s, τ: fw8 swings to a third of the first sideslip in 1.5 s (10 m/s from the side). By hand, of three flights
+)
+OVER = 6.0  # τ in which it has died away
+FOLDED = 0.0, 0.05  # rad, α and its standard deviation with the wings folded and while they unfold. By hand
+LIFTED_SD = 0.01  # rad, of α by lift: pitch rate, wings that twist. fw8 is within 0.011 at any time. By hand
+STEADY_SD = 0.01  # rad, of β beside turbulence: an aircraft that is not trimmed to the last
+LEAST_SPEED = 10.0  # m/s, below which no wing flies
+SQUARE = 1.41  # standard deviation of the square of a normal number of mean 0, over its variance
+STEEPEST = 0.35  # rad, beyond which no wing lifts as the curve says
+
+
+class FlowAngles:
+    """Both angles in flight.
+
+    Parameters
+    ----------
+    aided : AidedSettings
+        What is believed of aircraft and air.
+
+    Attributes
+    ----------
+    lift : float
+        n, m/s², that has been seen last with the wings out; NaN before.
+    """
+
+    __slots__ = ("_gust", "_left", "_side2", "_slope", "_zero", "lift")
+
+    def __init__(self, aided: AidedSettings) -> None:
+        self._slope, self._zero = aided.lift_slope, aided.lift_zero
+        self._gust = aided.gust_sd if aided.gust_sd > aided.gust_floor else 0.0
+        self.forget()
+
+    def forget(self) -> None:
+        """Know nothing of the past."""
+        self.lift, self._left, self._side2 = float("nan"), 0.0, 0.0
+
+    def leave(self, t: float, side: float) -> None:
+        """Be told that the rail has been left at `t`, s, with a sideslip of this sine."""
+        self._left, self._side2 = t, side * side
+
+    def side(self, t: float, v: float) -> tuple[float, float]:
+        """Return the mean of y² and its standard deviation at `t`, s, and an airspeed, m/s."""
+        y = self._gust / v if v > LEAST_SPEED else self._gust / LEAST_SPEED
+        mean = y * y + STEADY_SD * STEADY_SD
+        if self._side2 > 0.0:
+            since = (t - self._left) / SWING
+            if since < OVER:
+                mean += self._side2 * exp(-2.0 * since) if since > 0.0 else self._side2
+            else:
+                self._side2 = 0.0
+        return mean, SQUARE * mean
+
+    def down(self, v: float, density: float) -> tuple[float, float]:
+        """Return z, the sine of α, and its standard deviation at an airspeed, m/s, in air of a density, kg/m³."""
+        lift = self.lift
+        if not (lift == lift and self._slope > 0.0 and v > LEAST_SPEED):
+            return FOLDED
+        alpha = self._slope * lift / (density * v * v) + self._zero
+        if alpha > STEEPEST:
+            return STEEPEST, 0.5 * STEEPEST
+        if alpha < -STEEPEST:
+            return -STEEPEST, 0.5 * STEEPEST
+        return alpha, LIFTED_SD

@@ -1,0 +1,242 @@
+"""The wind on the rail: along it u₀, across it c, and the airspeed V = √(u² + c²) until the rail is left.
+
+The push changes the air's speed along the rail alone, u = u₀ + ∫(f_x − b − s) dt. So the filter's airspeed is u there,
+and c is kept beside it, with its variance and its covariances with u and with the pair's difference d. Both ports read
+what V and the angle make of them (`head_errors`).
+
+u₀ and c are believed as the environment declares them, at the height of the head on the rail, ± the turbulence and a
+share of the mean wind. After a covered tare the pair reads
+
+    D = P(u₀, c) = q_c(V) (c_t − c_s)
+
+which corrects both. In the wind, or without a tare, the pair's difference at rest is d + P(u₀, c) instead: d is known
+as well as the wind, and its error goes with that of the wind. E[P] is P of the means and ½ ρ (σ_u² + σ_c²).
+
+**At the rail's end**, when the push is over, the path turns into the wind: V ← √(u² + c²), and the covariances of V are
+those of u times u/V and those of c times c/V.
+"""
+
+from math import hypot, sqrt
+
+from uavsim.onboard.airspeed.energy import Beside, EnergyFilter
+from uavsim.onboard.airspeed.energy_model import isentropic
+from uavsim.onboard.airspeed.gust import GRAVITY
+from uavsim.onboard.airspeed.head_errors import HeadErrors
+from uavsim.onboard.airspeed.settings import AidedSettings
+
+SMALL = 0.05  # m/s, of the differences by which the ports' readings are derived
+TURNS = 4  # Gauss-Newton's on the rail, where D bends with both
+CALM = 1.0  # m/s, standard deviation of a wind that nobody declares: Beaufort 1, which a crew calls calm
+GROWTH = 0.28  # dW/W over dh/h near the ground: 1/ln(h/z₀) of the logarithmic law at 1.6 m over short grass
+AGO = 0.25  # s, by which the readings on the rail are older than the filter's start: half of their stretch
+
+
+class RailWind:
+    """What is known of the wind while the aircraft is on its rail.
+
+    Parameters
+    ----------
+    aided : AidedSettings
+        What is declared of the wind.
+    head : HeadErrors
+        Of both ports.
+
+    Attributes
+    ----------
+    declared : bool
+        Whether there is a wind that one knows of.
+    on : bool
+        Whether the filter's airspeed is u.
+    pushed : bool
+        Whether the push has been felt.
+    side : float
+        Sine of the sideslip that the rail has been left with.
+    """
+
+    __slots__ = (
+        "_at",
+        "_beside",
+        "_down",
+        "_head",
+        "_height",
+        "_mean",
+        "_sd",
+        "_side",
+        "_start",
+        "declared",
+        "on",
+        "pushed",
+        "side",
+    )
+
+    def __init__(self, aided: AidedSettings, head: HeadErrors) -> None:
+        self.declared = aided.rail_wind_sd > 0.0
+        self._head, self._sd = head, aided.rail_wind_sd if self.declared else CALM
+        across = hypot(aided.rail_wind_side, aided.rail_wind_down)
+        self._mean = aided.rail_wind_along, across
+        self._side, self._down = (
+            (aided.rail_wind_side / across, aided.rail_wind_down / across) if across > 0.0 else (1.0, 0.0)
+        )
+        self.on = self.pushed = False
+        self.side = 0.0
+        self._start, self._at = 0.0, aided.launch_height
+        self._height = self._at
+        self._beside = Beside()
+
+    @property
+    def speed_declared(self) -> float:
+        """Of the mean wind on the rail, m/s."""
+        return hypot(*self._mean)
+
+    def forget(self) -> None:
+        """Be told that the aircraft is in flight, wherever the filter begins."""
+        self.on, self.side = False, 0.0
+
+    def begin(
+        self,
+        seen: tuple[float, float] | None,
+        *,
+        tared: bool,
+        air: tuple[float, float, float],
+        density: float,
+    ) -> tuple[float, float, float, float, float]:
+        """Begin on the rail.
+
+        Parameters
+        ----------
+        seen : tuple of float or None
+            The pair's mean difference at rest, Pa, less its tare where that was covered, and its variance, Pa²; None:
+            nothing was read.
+        tared : bool
+            Whether a covered tare has been taken off, so that what is left is the wind's.
+        air : tuple of float
+            Static pressure, Pa, 7 R T, m²/s², and by how much gusts widen the wind in `AGO`, m²/s².
+        density : float
+            Of the air, kg/m³.
+
+        Returns
+        -------
+        tuple of float
+            u₀ and its standard deviation, m/s; what is to be taken off the pair's difference, Pa, its variance, Pa²,
+            and the covariance of u₀ with what is left, Pa·m/s.
+        """
+        static, heat, gusts = air
+        (u, c), one = self._mean, self._sd * self._sd
+        uu, cc, uc = one, one, 0.0
+        off = variance = ud = cd = 0.0
+        if seen is not None and tared:
+            u, c, uu, cc, uc = self._corrected(seen, static, heat)
+        elif seen is not None:
+            felt, hu, hc = self._at_rest(u, c, static, heat)
+            off = seen[0] - felt - 0.5 * density * (uu + cc)
+            variance = seen[1] + hu * hu * uu + hc * hc * cc + 0.5 * density * density * (uu * uu + cc * cc)
+            ud, cd = -hu * uu, -hc * cc
+        self.on, self.pushed, self.side = True, False, 0.0
+        uu, cc = uu + gusts, cc + gusts
+        self._start, self._height = u, self._at
+        self._beside = Beside(c, cc, of_v=uc, of_d=cd)
+        return u, sqrt(uu), off, variance, ud
+
+    def _corrected(
+        self, seen: tuple[float, float], static: float, heat: float
+    ) -> tuple[float, float, float, float, float]:
+        """Return u₀ and c by what is declared and what the tared pair reads, with variances and covariance."""
+        reading, variance = seen
+        (u, c), one = self._mean, self._sd * self._sd
+        at_u, at_c, hu, hc, spread = u, c, 0.0, 0.0, 1.0
+        for _ in range(TURNS):
+            felt, hu, hc = self._at_rest(at_u, at_c, static, heat)
+            spread = (hu * hu + hc * hc) * one + variance
+            shift = (reading - felt - hu * (u - at_u) - hc * (c - at_c)) / spread
+            at_u, at_c = u + hu * one * shift, c + hc * one * shift
+        gain = one * one / spread
+        return at_u, at_c, one - gain * hu * hu, one - gain * hc * hc, -gain * hu * hc
+
+    def _at_rest(self, u: float, c: float, static: float, heat: float) -> tuple[float, float, float]:
+        """Return P(u, c), Pa, and its derivatives."""
+        total, below = self._ports(u, c, static, heat)
+        by_u, below_u = self._ports(u + SMALL, c, static, heat)
+        by_c, below_c = self._ports(u, c + SMALL, static, heat)
+        felt = total - below
+        return felt, (by_u - below_u - felt) / SMALL, (by_c - below_c - felt) / SMALL
+
+    def _ports(self, u: float, c: float, static: float, heat: float) -> tuple[float, float]:
+        """Return what both ports read of the air's speed along and across the rail, Pa: total, static."""
+        v2 = u * u + c * c
+        speed = sqrt(v2)
+        if speed < SMALL:
+            return static, static
+        impact = isentropic(speed, static, heat) - static
+        total, at_static = self._head.shares(u / speed, c * self._side / speed, c * self._down / speed, 5.0 * v2 / heat)
+        return static + impact * total, static + impact * at_static
+
+    # -- the push ------------------------------------------------------------------------------------------------------
+
+    def speed(self, u: float) -> float:
+        """Return V, m/s, of the filter's airspeed."""
+        return hypot(u, self._beside.value) if self.on else u
+
+    def gained(self, u: float) -> float:
+        """Return the speed over the ground, m/s: what u has gained."""
+        return u - self._start
+
+    def advance(self, dt: float, variance: float, energy: EnergyFilter) -> None:
+        """Go on by so much, s, in which gusts have added a variance to that of u, m²/s², and to that of c."""
+        self._beside.advance(dt)
+        if self.pushed:  # up the rail the wind across grows, too
+            climb = self.gained(energy.v) * energy.s / GRAVITY
+            self._height += climb * dt
+            self._beside.value *= 1.0 + GROWTH * climb * dt / self._height
+        self._beside.variance += variance
+
+    def total(
+        self,
+        energy: EnergyFilter,
+        reading: float,
+        variance: float,
+        pushed: float,
+        heat: float,
+        *,
+        relative: bool = False,
+    ) -> float:
+        """Take a total pressure, which is that of V at an angle, as `EnergyFilter.total` does; return the NIS.
+
+        `relative` says whether it is read relative to what the static port reads, by a differential sensor.
+        """
+        u, p, c = energy.v, energy.p, self._beside.value
+
+        def read(along: float, across: float) -> float:
+            total, static = self._ports(along, across, p, heat)
+            return total - static if relative else total
+
+        felt = read(u, c)
+        slopes = (read(u + SMALL, c) - felt) / SMALL, (read(u, c + SMALL) - felt) / SMALL
+        return energy.total_of_two(reading - felt, variance, pushed, slopes, self._beside)
+
+    def static(self, energy: EnergyFilter, reading: float, variance: float, ahead: float, heat: float) -> float:
+        """Take a static pressure, whose port the wind blows at, as `EnergyFilter.static` does; return the NIS."""
+        c = self._beside.value
+        off = self._ports(energy.v, c, energy.p, heat)[1] - energy.p
+        more = self._ports(energy.v, c + SMALL, energy.p, heat)[1] - energy.p
+        return energy.static_of_two(reading - off, variance, ahead, (more - off) / SMALL, self._beside)
+
+    def told(self, u: float, variance: float) -> tuple[float, float]:
+        """Return V, m/s, and its variance, m²/s², of u and its variance."""
+        c = self._beside.value
+        v = hypot(u, c)
+        if v < SMALL:
+            return v, variance + self._beside.variance
+        x, y = u / v, c / v
+        found = x * x * variance + 2.0 * x * y * self._beside.of_v + y * y * self._beside.variance
+        return v, found if found > 0.0 else 0.0
+
+    def leave(self, energy: EnergyFilter) -> None:
+        """Turn the filter's airspeed from u into V: the rail ends."""
+        self.on = False
+        c = self._beside.value
+        v, variance = self.told(energy.v, energy.vv)
+        if v < SMALL:
+            energy.widen_speed(self._beside.variance)
+            return
+        self.side = c * self._side / v
+        energy.turn(v, variance, energy.v / v, c / v, self._beside)
