@@ -184,6 +184,7 @@ def _pressure(name: str, document: str, sheet: dict[str, Any]) -> PressureDescri
         name=name,
         document=document,
         reference_pressure=float(v["reference_pressure_pa"]),
+        iir_weights=tuple(zip(v["iir_coefficients"], map(float, v["iir_weights"]), strict=True)),
         **_settings(sheet),
         **term.read(PressureDescription, v),
     ).select(mode=v["default_mode"])
@@ -195,6 +196,7 @@ def _differential(name: str, document: str, sheet: dict[str, Any]) -> Differenti
         name=name,
         document=document,
         reference_pressure=0.0,
+        iir_weights=((0, 1.0),),
         **_settings(sheet),
         **term.read(DifferentialDescription, v),
     ).select(mode=v["default_mode"])
@@ -207,7 +209,6 @@ def _settings(sheet: dict[str, Any]) -> dict[str, Any]:
     return {
         "modes": modes,
         "mode": modes[0],
-        "iir_weights": tuple(zip(v["iir_coefficients"], map(float, v["iir_weights"]), strict=True)),
         "iir": 0,
         "range": pair(v["range_pa"]),
     }

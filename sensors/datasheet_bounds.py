@@ -48,8 +48,6 @@ DIFFERENCE_PA = number(-1e6, 1e6)  # Pa: 10 bar, fifty times what Mach 1 gives a
 DIFFERENTIAL: dict[str, Rule] = {
     "default_mode": NAMES,
     "range_pa": listed(DIFFERENCE_PA, count=2, rising=True),
-    "iir_coefficients": PRESSURE["iir_coefficients"],
-    "iir_weights": PRESSURE["iir_weights"],
     **rules(DifferentialDescription),
 }
 

@@ -222,10 +222,6 @@ def _fits_modes(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
                 f"key modes.conversion_ms of mode {shown(mode['name'])}, {mode['conversion_ms']:g} ms, is longer than "
                 f"the period of its rate, {1000.0 / mode['rate']:g} ms"
             )
-    if len(v["iir_weights"]) != len(v["iir_coefficients"]):
-        raise ValueError("key values.iir_weights needs one entry for each of iir_coefficients")
-    if v["iir_coefficients"][0] != 0 or v["iir_weights"][0] != 1:
-        raise ValueError("key values.iir_coefficients must begin with 0, the filter off, and iir_weights with its 1")
     low, high = v["range_pa"]
     for mode in modes:
         if mode["resolution_pa"] > high - low:
@@ -236,6 +232,10 @@ def _fits_modes(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
 
 
 def _fits_pressure(v: dict[str, Any]) -> None:
+    if len(v["iir_weights"]) != len(v["iir_coefficients"]):
+        raise ValueError("key values.iir_weights needs one entry for each of iir_coefficients")
+    if v["iir_coefficients"][0] != 0 or v["iir_weights"][0] != 1:
+        raise ValueError("key values.iir_coefficients must begin with 0, the filter off, and iir_weights with its 1")
     low, high = v["range_pa"]
     if not low <= STANDARD_PRESSURE <= high:
         span = f"{low:g} to {high:g} Pa"

@@ -278,8 +278,6 @@ class DifferentialSettings:
         A shipped part, or the path of a TOML file of one's own.
     mode : str or None
         One of the part's modes; None is its default.
-    iir : int
-        Coefficient of the part's digital filter, as its datasheet prints it; 0 is off.
     polarity : {"normal", "reversed"}
         Which tube is on which port; reversed, the sensor reads p_s − p_t. Nothing on board knows it.
     noise_scale : float
@@ -300,7 +298,6 @@ class DifferentialSettings:
 
     preset: str = "ms4525do"
     mode: str | None = None
-    iir: Annotated[int, Ge(0)] = 0
     polarity: Literal["normal", "reversed"] = "normal"
     noise_scale: Annotated[float, Interval(ge=0.0, le=1000.0)] = 1.0
     offset_pa: Annotated[float, Interval(ge=-100000.0, le=100000.0)] = 0.0
@@ -312,7 +309,7 @@ class DifferentialSettings:
 
     def description(self) -> DifferentialDescription:
         """Return the part as chosen, for the unit and for the filter; ValueError if there is none such."""
-        part = catalogue.differential_sensor(self.preset).select(mode=self.mode, iir=self.iir)
+        part = catalogue.differential_sensor(self.preset).select(mode=self.mode)
         return part.scaled(self.noise_scale, self.errors)
 
 

@@ -268,7 +268,6 @@ NOT_YET = {
     "air_data.total.errors.thermometer": "the temperature is the static sensor's",
     "air_data.differential.errors.thermometer": "the temperature is the static sensor's",
     "air_data.differential.errors.solder": "no shipped part is said to move by it",
-    "air_data.differential.iir": "no shipped part has a filter",
     "air_data.differential.polarity": BREAKS,
     "air_data.tare": "when the tare is taken the estimator is told",
     "air_data.tare_duration": "when the tare is taken the estimator is told",
