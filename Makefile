@@ -4,12 +4,13 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m pip
 
-.PHONY: help fly test lint validate mutants golden bench aircraft clean
+.PHONY: help fly test lint validate certify mutants golden bench aircraft clean
 
 help:
 	@echo "make fly       install, then fly the scenario 'catapult' with its score and plots"
 	@echo "make test      every check and test (ruff, mypy, import-linter, pytest)"
-	@echo "make validate  the statistical checks over many seeds, and the long attacks (over half an hour)"
+	@echo "make validate  the statistical checks over many seeds, and the long attacks (a quarter of an hour)"
+	@echo "make certify   every set of docs/certify.md, whole (two to three hours; goes on where it was ended)"
 	@echo "make mutants   how many of 300 small errors the tests see (half an hour)"
 	@echo "make golden    fly the short flights whose figures are kept, and keep them anew"
 	@echo "make bench     what a step costs"
@@ -29,7 +30,13 @@ lint: $(VENV)/.dev
 	$(BIN)/lint-imports
 
 validate: $(VENV)/.dev
-	$(BIN)/python -m pytest -q -m slow
+	$(BIN)/python -m pytest -q -m "slow and not certify" -n 2 --dist loadfile
+
+certify: $(VENV)/.dev
+	met=0; \
+	$(BIN)/python scripts/certify.py --out output/certify --resume --results docs/results --docs || met=1; \
+	$(BIN)/python -m pytest -q -m "slow or certify" --whole -n 2 --dist loadfile || met=1; \
+	exit $$met
 
 mutants: $(VENV)/.dev
 	$(BIN)/python scripts/mutants.py --out output/mutants.json

@@ -3,12 +3,13 @@
     dropout     no reading comes
     invalid     a reading comes and is NaN
     stuck       the last value before is repeated, with new time stamps
+    dead        s, whatever is measured
     spike       z ± s, either sign with the same probability
     offset      z + s
 
 A fault concerns the readings with start ≤ t < stop. A dropout, an invalid reading and a spike hit each of those with
-the fault's probability, by itself; a stuck value and an offset are there throughout. This is what arrives at the flight
-computer: a spike is not bounded by the range and needs not be a multiple of the least significant bit.
+the fault's probability, by itself; a stuck or dead value and an offset are there throughout. This is what arrives at
+the flight computer: a spike is not bounded by the range and needs not be a multiple of the least significant bit.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -125,6 +126,15 @@ def _offset(fault: Fault, _uniform: Iterator[float]) -> Hit:
     return hit
 
 
+def _dead(fault: Fault, _uniform: Iterator[float]) -> Hit:
+    def hit(sent: Stamped) -> Stamped:
+        if fault.start <= sent[0] < fault.stop:
+            return tuple(fault.size if on else value for on, value in _concerned(fault, sent))
+        return sent
+
+    return hit
+
+
 def _stuck(fault: Fault, _uniform: Iterator[float]) -> Hit:
     held: Stamped | None = None  # what it was before; if there was nothing, the first that comes
 
@@ -143,6 +153,7 @@ _KINDS: dict[str, Callable[[Fault, Iterator[float]], Hit]] = {
     "dropout": _dropout,
     "invalid": _invalid,
     "stuck": _stuck,
+    "dead": _dead,
     "spike": _spike,
     "offset": _offset,
 }

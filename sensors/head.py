@@ -13,7 +13,8 @@ gave last.
 
 The sensors run freely, so the two values of a row are of different instants and as old as their clocks make them:
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
-cover both ports feel the static pressure, wind or not.
+cover both ports feel the static pressure, wind or not, for the whole flight if it is left on. Swapped tubes bring each
+port's pressure to the other's sensor.
 
 With no tube between the air and two sensors that do not feel acceleration, a conversion takes the truth, and what the
 ports make of it, at the middle of its window, and only conversions that are polled ask for it (`full` is false; of a
@@ -31,6 +32,7 @@ from math import inf, nan
 
 from sensors.clock import Clock
 from sensors.differential import Response, passing
+from sensors.faults import value_faults
 from sensors.pneumatics import Line
 from sensors.pressure import PressureSensor
 from sensors.probe import static_port, total_port
@@ -44,7 +46,7 @@ from sensors.settings import (
 )
 from sensors.streams import Streams
 from sensors.surroundings import Air, Flow, Surroundings
-from sensors.unit import Triple, Unit
+from sensors.unit import Batch, Triple, Unit
 
 Row = tuple[float, float, float, float, float, float]
 
@@ -92,7 +94,8 @@ class AirDataHead:
 
     __slots__ = (
         "_dt", "_last_static", "_lines", "_membranes", "_next_poll", "_open", "_ports", "_response", "_settings",
-        "_static_error", "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_total_error",
+        "_static_error", "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_thermometer",
+        "_told_temperature", "_total_error",
         "_total_felt", "_total_truth", "covered_until", "due", "full", "static", "surroundings", "total",
     )  # fmt: skip
 
@@ -109,6 +112,7 @@ class AirDataHead:
     ) -> None:
         self._settings = settings
         forward, down = settings.normals()
+        alike = Batch.drawn(settings.batch, streams, f"{name}.batch")
         first, second = settings.sensors()
         self._response: Response | None = None
         if isinstance(first, DifferentialSettings):
@@ -116,9 +120,11 @@ class AirDataHead:
             self._response = Response(first.description(), both, reversed=first.polarity == "reversed")
         self._last_static = nan
         channel = "total" if self._response is None else "differential"
-        self.total = _sensor(first, forward, settings.thermal, streams, unit, f"{name}.{channel}")
-        self.static = _sensor(second, down, settings.thermal, streams, unit, f"{name}.static")
-        self.covered_until = covered_until
+        self.total = _sensor(first, forward, settings.thermal, streams, unit, f"{name}.{channel}", alike)
+        self.static = _sensor(second, down, settings.thermal, streams, unit, f"{name}.static", alike)
+        self._thermometer = value_faults(settings.thermometer_faults, streams, f"{name}.thermometer")
+        self._told_temperature = nan
+        self.covered_until = inf if settings.cover_left_on else covered_until
         poll = Clock.drawn(settings.rate, streams(f"{name}.poll"))
         self.due, self._next_poll = poll.due, poll.later
 
@@ -129,11 +135,11 @@ class AirDataHead:
         self._static_felt: list[float] = []
         self._t = self._temperature = nan
         self._lines: tuple[Line | None, Line | None] | None = self._connect(nan, nan)  # checks the directions, too
-        self._open = (self._total_error, self._static_error, *self._lines) == (None,) * 4
+        self._open = (self._total_error, self._static_error, *self._lines) == (None,) * 4 and not settings.swapped_tubes
         felt = settings.acceleration_sensitivity
         self._membranes = (*self.total.acceleration, *self.static.acceleration) if felt else (0.0,) * 6
         ports = not (self._total_error is None and self._static_error is None)
-        behind = self._lines != (None, None) or any(self._membranes)
+        behind = self._lines != (None, None) or any(self._membranes) or settings.swapped_tubes
         self.full = behind or (ports and not hasattr(surroundings, "flow_at"))
         of_total, of_static = (self._total_read, self._static_read) if ports else (self._total_port, self._static_port)
         self._ports = of_total, of_static
@@ -194,9 +200,18 @@ class AirDataHead:
                 if p_static == p_static:
                     self._last_static = p_static
                 p_total += self._last_static
+            if self._thermometer is not None:
+                temperature = self._told(t, temperature)
             rows.append((t, p_total, p_static, temperature, t_total, t_static))
             t = self.due = self._next_poll()
         return rows
+
+    def _told(self, t: float, temperature: float) -> float:
+        """Return what a thermometer that breaks makes of a temperature, K; where nothing comes the last one stands."""
+        arrived = None if self._thermometer is None else self._thermometer(t, temperature)
+        if arrived is not None:
+            self._told_temperature = arrived
+        return self._told_temperature
 
     # -- the truth of a conversion -----------------------------------------------------------------------------------
 
@@ -277,7 +292,7 @@ class AirDataHead:
         if static_line is not None:
             bay = p_static if self._response is None or not self._response.passes else total
             static = static_line.step(t, static, bay, temperature, force)
-        return total, static
+        return (static, total) if self._settings.swapped_tubes else (total, static)
 
     def _connect(self, pressure: float, temperature: float) -> tuple[Line | None, Line | None]:
         s = self._settings
@@ -288,7 +303,7 @@ class AirDataHead:
             return Line(tube, direction, faults, self._dt, pressure=pressure, temperature=temperature)
 
         total, static = s.tubes()
-        of_total, of_static = s.total_port.faults, s.static_port.faults
+        of_total, of_static = s.total_port.faults + s.port_faults, s.static_port.faults + s.port_faults
         if self._response is not None and self._response.passes:
             of_total, of_static = passing(of_total), passing(of_static)
         return line(*total, of_total), line(*static, of_static)
@@ -306,6 +321,7 @@ def _sensor(
     streams: Streams,
     unit: Unit | None,
     name: str,
+    batch: Batch,
 ) -> PressureSensor:
     return PressureSensor(
         settings.description(),
@@ -317,6 +333,7 @@ def _sensor(
         rate_error_percent=settings.rate_error_percent,
         thermal=thermal,
         faults=settings.faults,
+        batch=batch,
     )
 
 

@@ -34,19 +34,30 @@ Column. The gas in the tube feels the specific force f, and its weight acts like
 
     u = p_port - ρ f·r,   r from port to sensor, ρ = p/(R_a T)        a tube straight aft adds ρ f_x L
 
-Port. g is its opening (1 … 0), τ₀ the lag of tube and hole, T that of a leak to the bay's pressure b, y the tube's end:
+Port. g is its opening (1 … 0), τ₀ the lag of tube and hole, y what the tube's end has without a leak, b the bay's
+pressure. What a leak leaves of y - b is σ: air flows through port, tube and leak, one behind the other,
 
-    p' = (p_∞ - p)/T_p,   p_∞ = (g T y + τ₀ b)/(g T + τ₀),   T_p = τ₀ (1 - g) T/(g T + τ₀ (1 - g))
+    p_∞ = b + σ (y - b) g T/(g T + τ₀),   |y - b| = R Q + K (1/g² + 1/a²) Q²,   σ |y - b| = K Q²/a²,   K = ρ/(2 C_d² A²)
 
-two resistances, τ₀/g to the port and T to the bay, into one volume. Blocked is g = 0: held, or with a leak gone to b
-with T. Open with a leak, g = 1: the steady mixture, at once behind the tube. Ice takes g from 1 to 0 as ½(1 + cos πs),
-s the share of its duration that has passed. Water adds a plug of length l: its weight ρ_w f·r l/|r| to the column, and
-its inertia and friction to those of the tube, a₂ += 4/3 ρ_w l C/A and a₁ += 128 μ_w l C/(πd⁴), C = (V + V_t/2)/(γp).
+with R = 128 μL/(πd⁴) of the tube (Poiseuille), sharp-edged holes of area g A and a A (A = πd²/4, Q = C_d A √(2Δp/ρ),
+C_d = 0.61: Idelchik, Handbook of Hydraulic Resistance, diagram 4-18; ISO 5167-2). A tube torn off, a = 1, halves y - b
+where it is short, and leaves less where it is long and narrow. Into the volume behind, with T of the leak,
+
+    p' = (p_∞ - p)/T_p,   1/T_p = 1/T + g/(τ₀ (1 - g))
+
+Blocked is g = 0: held, or with a leak gone to b with T. Open, g = 1: p_∞ at once. T and a are two numbers of one leak:
+what takes a second behind a shut port is a pinhole of laminar flow, a = 0, which an open port all but hides, T ≫ τ₀;
+a hole as wide as the tube empties that volume in milliseconds. Ice takes g from 1 to 0 as ½(1 + cos πs), s the share of
+its duration that has passed, or of which the air was such that it grows. Water adds a plug of length l: its weight
+ρ_w f·r l/|r| to the column, and its inertia and friction to those of the tube, a₂ += 4/3 ρ_w l C/A and
+a₁ += 128 μ_w l C/(πd⁴), C = (V + V_t/2)/(γp).
 """
 
 import cmath
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import cos, exp, inf, isfinite, nan, pi, sqrt
+from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -60,8 +71,12 @@ PRANDTL = 0.71  # –, air at 15 °C
 SUTHERLAND, SUTHERLAND_TEMPERATURE = 1.458e-6, 110.4  # kg/(m s √K) and K (ISO 2533)
 WATER_DENSITY = 1000.0  # kg/m³
 WATER_VISCOSITY = 1.0e-3  # Pa s, 20 °C
+NOTHING_GROWN: Mapping[int, float] = MappingProxyType({})
 STANDARD = {"pressure": 101325.0, "temperature": 288.15}  # Pa and K, sea level (ISO 2533)
 SHORTEST = 1e-6  # m; what is shorter is no tube
+TIGHT = 1e-9  # –, or Pa: a hole, or a difference, below which no air flows and squares are not taken
+DISCHARGE = 0.61  # –, C_d of a sharp-edged hole
+STANDARD_SCALE, STANDARD_POWER = 44330.77, 0.190263  # m and –: H = 44.33 km (1 - (p/p₀)^0.19), ISO 2533 below 11 km
 HOLE = 1e-4  # s, lag of an open hole without a tube: stands against leak and ice where there is no tube
 
 
@@ -269,8 +284,8 @@ class Line:
     """
 
     __slots__ = (
-        "_air", "_bay", "_condition", "_dt", "_end", "_faults", "_gx", "_gy", "_gz", "_hole", "_lag", "_last", "_plug",
-        "_shut", "_tube", "_unit", "_until", "diameter", "length", "volume",
+        "_air", "_bay", "_condition", "_dt", "_end", "_faults", "_friction", "_grown", "_gx", "_gy", "_gz", "_hole",
+        "_lag", "_last", "_loss", "_plug", "_shut", "_tube", "_unit", "_until", "diameter", "length", "volume",
     )  # fmt: skip
 
     def __init__(
@@ -297,7 +312,13 @@ class Line:
             shape = {"length": self.length, "diameter": self.diameter, "volume": self.volume}
             self._hole += laminar_lag(**shape, **self._air, polytropic=GAMMA)
         self._tube = SecondOrder(*self._lag, dt) if self._lag[1] > 0.0 else None
-        self._condition = (1.0, 0.0, 0.0)
+        warm = self._air["temperature"]
+        self._friction = 128.0 * viscosity(warm) * self.length / (pi * self.diameter**4)  # R, Pa s/m³
+        section = 0.25 * pi * self.diameter**2
+        density = self._air["pressure"] / (GAS_CONSTANT * warm)
+        self._loss = 0.5 * density / (DISCHARGE * section) ** 2  # K, Pa s²/m⁶
+        self._grown = {i: 0.0 for i, fault in enumerate(self._faults) if fault.conditional}
+        self._condition = Condition(1.0, 0.0, 0.0, 0.0)
         self._until = -inf
         self._plug = 0.0
         self._shut = False
@@ -321,14 +342,16 @@ class Line:
         weight = port * (self._gx * fx + self._gy * fy + self._gz * fz)
         inlet = port + (weight / temperature if temperature else nan)
         if self._faults:
+            if self._grown:
+                self._grow(t, bay, temperature)
             return self._faulty(t, inlet, bay, force)
         return self._tube.step(inlet) if self._tube is not None else inlet
 
     def _faulty(self, t: float, inlet: float, bay: float, force: Triple) -> float:
         if t >= self._until:
-            self._condition = condition(self._faults, t)
+            self._condition = condition(self._faults, t, self._grown)
             self._until = steady_until(self._faults, t)
-        opening, leak, plug = self._condition
+        opening, leak, area, plug = self._condition
         if plug != self._plug:
             self._flood(plug)
         if plug:
@@ -340,7 +363,7 @@ class Line:
         end = self._tube.step(inlet) if self._tube is not None else inlet
         if self._last != self._last:  # shut from the first step on: with what is there then
             self._last, self._end, self._bay = end, end, bay
-        felt = self._mix(end, bay, opening, leak)
+        felt = self._mix(end, bay, opening, leak, area)
         self._end, self._bay = end, bay
         if felt == felt:
             self._last = felt
@@ -348,18 +371,41 @@ class Line:
             self._last = felt = end
         return felt
 
-    def _mix(self, end: float, bay: float, opening: float, leak: float) -> float:
-        """Return the pressure of the volume between the tube's end and a leak of `leak` = 1/T."""
+    def _mix(self, end: float, bay: float, opening: float, leak: float, area: float) -> float:
+        """Return the pressure of the volume between the tube's end and a leak of `leak` = 1/T and `area`."""
         if leak == 0.0:
             if opening == 1.0:
                 return end
             if opening == 0.0:
                 return self._last
-        share = opening / (opening + self._hole * leak) if leak else 1.0
+        share = 1.0
+        if leak:
+            share = self.share(end - bay, opening, area) * opening / (opening + self._hole * leak)
         level, before = bay + share * (end - bay), self._bay + share * (self._end - self._bay)
         rate = leak + (opening / (self._hole * (1.0 - opening)) if opening < 1.0 else inf)
         lagging = (level - before) / (rate * self._dt)  # exact for a level that is linear within the step
         return level - lagging + (self._last - before + lagging) * exp(-rate * self._dt)
+
+    def share(self, difference: float, opening: float, area: float) -> float:
+        """Return σ, what a leak leaves of the difference between port and bay, Pa; both areas over the tube's own."""
+        drop = abs(difference)
+        if opening < TIGHT:
+            return 0.0
+        if area < TIGHT or drop < TIGHT:
+            return 1.0
+        holes = 1.0 / opening**2 + 1.0 / area**2
+        root = sqrt(self._friction**2 + 4.0 * self._loss * holes * drop)
+        flow = 2.0 * drop / (self._friction + root)  # m³/s
+        return min(self._loss * flow * flow / (area**2 * drop), 1.0)
+
+    def _grow(self, t: float, pressure: float, temperature: float) -> None:
+        """Let ice grow for a step where the air is such; it is gone outside its times."""
+        for i in self._grown:
+            fault = self._faults[i]
+            if not fault.start <= t < fault.stop:
+                self._grown[i] = 0.0
+            elif grows(fault, pressure, temperature):
+                self._grown[i] += self._dt
 
     def _flood(self, plug: float) -> None:
         """Put a plug of water into the tube, or take it out."""
@@ -383,26 +429,52 @@ class Line:
         return second_order(length=self.length, diameter=self.diameter, volume=self.volume, **self._air)
 
 
-def condition(faults: tuple[PortFault, ...], t: float) -> tuple[float, float, float]:
-    """Return how far a port is open, the rate at which its leaks fill it, 1/s, and the length of water in it, m."""
-    opening, leak, plug = 1.0, 0.0, 0.0
-    for fault in faults:
+class Condition(NamedTuple):
+    """How a port is."""
+
+    opening: float  # 1 … 0
+    leak: float  # 1/s, the rate at which its leaks fill it when it is shut
+    area: float  # of its leaks over the tube's section
+    plug: float  # m of water
+
+
+def grows(fault: PortFault, pressure: float, temperature: float) -> bool:
+    """Whether the air is such that ice grows: its temperature, K, and the pressure height of its pressure, Pa."""
+    if fault.below_temperature is not None and not temperature < fault.below_temperature:
+        return False
+    if fault.between_heights is None:
+        return True
+    if not pressure > 0.0:
+        return False
+    low, high = fault.between_heights
+    height: float = STANDARD_SCALE * (1.0 - (pressure / STANDARD["pressure"]) ** STANDARD_POWER)
+    return low <= height <= high
+
+
+def condition(faults: tuple[PortFault, ...], t: float, grown: Mapping[int, float] = NOTHING_GROWN) -> Condition:
+    """Return how a port is at a time, s; for how long ice has grown that does so only in some air, s, by its place."""
+    opening, leak, area, plug = 1.0, 0.0, 0.0, 0.0
+    for i, fault in enumerate(faults):
         if fault.start <= t < fault.stop:
             if fault.kind == "blocked":
                 opening = 0.0
             elif fault.kind == "ice":
-                share = (t - fault.start) / fault.duration
+                share = grown.get(i, t - fault.start) / fault.duration
                 opening = min(opening, 0.5 * (1.0 + cos(pi * share)) if share < 1.0 else 0.0)
             elif fault.kind == "leak":
                 leak += 1.0 / fault.time_constant
+                area += fault.area
             else:
                 plug += fault.water_length
-    return opening, leak, plug
+    return Condition(opening, leak, area, plug)
 
 
 def steady_until(faults: tuple[PortFault, ...], t: float) -> float:
-    """Return the time up to which the condition is that of time `t`, s; ice that is growing changes it always."""
-    if any(f.kind == "ice" and f.start <= t < min(f.start + f.duration, f.stop) for f in faults):
+    """Return the time up to which the condition is that of time `t`, s; ice that may be growing changes it always."""
+    if any(
+        f.kind == "ice" and f.start <= t < (f.stop if f.conditional else min(f.start + f.duration, f.stop))
+        for f in faults
+    ):
         return t
     edges = [edge for f in faults for edge in (f.start, f.stop) if edge > t]
     return min(edges, default=inf)

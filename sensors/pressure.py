@@ -35,7 +35,19 @@ from sensors.pressure_description import PressureDescription
 from sensors.settings import Fault, ThermalSettings
 from sensors.streams import Streams
 from sensors.thermal import Die
-from sensors.unit import MOST_RATE_ERROR, REFERENCE_TEMPERATURE, ROUND, Triple, Unit, clip, draw_error, unit_vector
+from sensors.unit import (
+    MOST_RATE_ERROR,
+    NO_BATCH,
+    REFERENCE_TEMPERATURE,
+    ROUND,
+    Batch,
+    Triple,
+    Unit,
+    clip,
+    draw_alike,
+    draw_error,
+    unit_vector,
+)
 
 Conversion = tuple[float, float, float]  # pressure Pa, temperature K, end of conversion s
 Truth = Callable[[float], tuple[float, float]]  # time s -> pressure at the sensor Pa, temperature K
@@ -67,6 +79,8 @@ class PressureSensor:
         Temperature of the die; without them it is the air's.
     faults : sequence of Fault
         What happens to its readings of pressure. A reading dropped is not delivered: the last one stays.
+    batch : Batch
+        What its temperature coefficient has in common with that of others.
 
     Attributes
     ----------
@@ -107,10 +121,11 @@ class PressureSensor:
         rate_error_percent: float = 0.0,
         thermal: ThermalSettings | None = None,
         faults: Sequence[Fault] = (),
+        batch: Batch = NO_BATCH,
     ) -> None:
         d = self.description = description
         self._streams, self._name, self._thermal, self._faults = streams, name, thermal, tuple(faults)
-        self._draw_unit(offset_pa, unit, unit_vector(normal, "normal of a membrane"))
+        self._draw_unit(offset_pa, unit, unit_vector(normal, "normal of a membrane"), batch)
         speed = 1.0 + self.rate_error + rate_error_percent / 100.0
         clock = Clock.drawn(d.rate * speed, streams(f"{name}.clock"))
         self._rate, self._count = clock.rate, 0
@@ -225,7 +240,7 @@ class PressureSensor:
         noise = white(self._streams(f"{self._name}.temperature.white"), self.description.temperature_white_sd)
         return [constant(self.temperature_offset), noise]
 
-    def _draw_unit(self, offset_pa: float, unit: Unit, normal: Triple) -> None:
+    def _draw_unit(self, offset_pa: float, unit: Unit, normal: Triple, batch: Batch) -> None:
         d = self.description
 
         def drawn(stream: str, sd: float, limit: float) -> float:
@@ -236,7 +251,8 @@ class PressureSensor:
         sensitivity = drawn("acceleration", d.acceleration_sd, d.acceleration_limit)
         self.offset = drawn("offset", d.offset_sd, d.offset_limit) + offset_pa
         self.solder = 0.0 if unit == "ideal" else 0.5 * (low + high) + shift
-        self.offset_tc = drawn("offset_tc", d.offset_tc_sd, d.offset_tc_limit)
+        generator = self._streams(f"{self._name}.offset_tc")
+        self.offset_tc = draw_alike(generator, d.offset_tc_sd, d.offset_tc_limit, unit, batch)
         self.scale_error = drawn("scale", d.scale_sd, d.scale_limit)
         self.rate_error = drawn("oscillator", min(d.rate_sd, MOST_RATE_ERROR), min(d.rate_limit, MOST_RATE_ERROR))
         self.temperature_offset = drawn("temperature.offset", d.temperature_offset_sd, d.temperature_offset_limit)

@@ -21,6 +21,7 @@ Phase = Literal["always", "waiting", "stroke", "flight"]
 Band = Annotated[float, Interval(gt=0.0, lt=500.0)]  # Hz, below half of the plant's 1 kHz
 Angle = Annotated[float, Interval(ge=-360.0, le=360.0)]  # degrees
 Time = Annotated[float, Interval(ge=0.0, le=3600.0)]  # s
+Height = Annotated[float, Interval(ge=-5000.0, le=11000.0)]  # m, pressure height below the tropopause
 Arm = Annotated[float, Interval(ge=-10.0, le=10.0)]  # m
 Vector = tuple[float, float, float]
 Amplitude = Annotated[float, Interval(ge=-1000.0, le=1000.0)]  # g; nothing that flies shakes more
@@ -115,18 +116,18 @@ class Fault:
     ----------
     kind : str
         "dropout": no reading comes; "invalid": a reading comes and is NaN; "stuck": the last value before it is
-        repeated; "spike": `size` of either sign is added; "offset": `size` is added.
+        repeated; "dead": every reading is `size`; "spike": `size` of either sign is added; "offset": `size` is added.
     start, stop : float
         Readings with start ≤ t < stop are concerned, s.
     probability : float
-        Share of those readings that is hit, each by itself; a stuck value and an offset are there throughout.
+        Share of those readings that is hit, each by itself; a stuck or dead value and an offset are there throughout.
     size : float
-        Of a spike or an offset, in the sensor's unit (m/s², Pa).
+        Of a spike or an offset, or what a dead sensor says, in the sensor's unit (m/s², Pa, K).
     axis : str
         Which axis of an accelerometer: "x", "y", "z" or "all"; without meaning for a pressure sensor.
     """
 
-    kind: Literal["dropout", "invalid", "stuck", "spike", "offset"]
+    kind: Literal["dropout", "invalid", "stuck", "dead", "spike", "offset"]
     start: Time = 0.0
     stop: Time = FOREVER
     probability: Annotated[float, Interval(ge=0.0, le=1.0)] = 1.0
@@ -320,16 +321,24 @@ class PortFault:
     Attributes
     ----------
     kind : str
-        "blocked": closed, what is behind it keeps its pressure; "leak": air comes in from the bay behind the port;
-        "ice": closes gradually over `duration` and stays shut until `stop`; "water": a plug of water in the tube.
+        "blocked": closed, what is behind it keeps its pressure; "leak": air comes in from the bay through a hole, as in
+        a torn tube; "ice": closes gradually over `duration` and stays shut until `stop`; "water": a plug of water in
+        the tube.
     start, stop : float
         s.
     duration : float
         Time in which ice closes the port, s.
     time_constant : float
         With which the pressure behind the leak goes to that of the bay when the port is blocked, s.
+    area : float
+        Of the leak's hole over the tube's section: with the port open it says how much of the port's pressure is left
+        at the sensor. 1 is a tube torn off; a slow leak is a pinhole, 0.
     water_length : float
         Length of the plug, m.
+    below_temperature : float or None
+        Temperature of the air below which ice grows, K; None is any. What has grown stays.
+    between_heights : (low, high) or None
+        Pressure heights of the standard atmosphere between which ice grows, m: a cloud; None is any.
     """
 
     kind: Literal["blocked", "leak", "ice", "water"]
@@ -337,7 +346,15 @@ class PortFault:
     stop: Time = FOREVER
     duration: Annotated[float, Interval(gt=0.0, le=3600.0)] = 5.0
     time_constant: Annotated[float, Interval(gt=0.0, le=3600.0)] = 1.0
+    area: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
     water_length: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.005
+    below_temperature: Annotated[float, Interval(ge=150.0, le=400.0)] | None = None
+    between_heights: tuple[Height, Height] | None = None
+
+    @property
+    def conditional(self) -> bool:
+        """Whether it is ice that grows only in some air."""
+        return self.kind == "ice" and not (self.below_temperature is None and self.between_heights is None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,7 +396,7 @@ class TotalPortSettings:
         What becomes of the port.
     """
 
-    probe: Literal["ideal", "plain", "bevelled", "kiel"] = "ideal"
+    probe: Literal["ideal", "plain", "bevelled", "kiel"] = "plain"
     slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
     tube: TubeSettings = field(default_factory=TubeSettings)
     faults: tuple[PortFault, ...] = ()
@@ -394,13 +411,13 @@ class StaticPortSettings:
     Attributes
     ----------
     error : float
-        c0.
+        c0. The default is a boom on the nose, one and a half diameters of the fuselage ahead of it: +0.02.
     error_alpha : float
         cα, 1/rad.
     error_alpha2 : float
-        cαα, 1/rad².
+        cαα, 1/rad². The default is of holes around a tube in cross-flow: 0.5 … 0.7 of the −1 of potential flow.
     error_beta2 : float
-        cββ, 1/rad².
+        cββ, 1/rad², as that.
     error_mach2 : float
         cM.
     slipstream : float
@@ -411,10 +428,10 @@ class StaticPortSettings:
         What becomes of the port.
     """
 
-    error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.0
+    error: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.02
     error_alpha: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
-    error_alpha2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
-    error_beta2: Annotated[float, Interval(ge=-100.0, le=100.0)] = 0.0
+    error_alpha2: Annotated[float, Interval(ge=-100.0, le=100.0)] = -0.55
+    error_beta2: Annotated[float, Interval(ge=-100.0, le=100.0)] = -0.55
     error_mach2: Annotated[float, Interval(ge=-10.0, le=10.0)] = 0.0
     slipstream: Annotated[float, Interval(ge=-0.9, le=5.0)] = 0.0
     tube: TubeSettings = field(default_factory=TubeSettings)
@@ -438,6 +455,17 @@ class AirDataSettings:
         What is between the air and the two sensors.
     pipe : float
         Length of the metal pipes before both sensors, m, in place of the ports' own tubes; the published head has 0.05.
+    port_faults : list of groups
+        What becomes of both ports at once, beside the faults of each.
+    swapped_tubes : bool
+        Whether each port is connected to the other's sensor.
+    cover_left_on : bool
+        Whether a cover, tared under it or not, stays on the head for the whole flight.
+    thermometer_faults : list of groups
+        What breaks in the thermometer that is read; a dropout leaves its last value on the bus.
+    batch : float
+        Share of the variance of the offsets' temperature coefficients that both sensors have in common, being of one
+        batch: 0 is none, and with 1 two equal parts drift alike.
     acceleration_sensitivity : bool
         Whether the membranes feel acceleration, as the presets say: an assumption, as no datasheet does.
     thermal : group
@@ -470,6 +498,11 @@ class AirDataSettings:
     total_port: TotalPortSettings = field(default_factory=TotalPortSettings)
     static_port: StaticPortSettings = field(default_factory=StaticPortSettings)
     pipe: Annotated[float, Interval(ge=0.0, le=10.0)] = 0.0
+    port_faults: tuple[PortFault, ...] = ()
+    swapped_tubes: bool = False
+    cover_left_on: bool = False
+    thermometer_faults: tuple[Fault, ...] = ()
+    batch: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     position: tuple[Arm, Arm, Arm] = (0.65, 0.0, 0.0)
     calibration: Calibration = "unit"
     acceleration_sensitivity: bool = False

@@ -5,12 +5,13 @@ deviation where the document says nothing else, guaranteed limits as bounds that
 """
 
 from math import inf, sqrt
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from annotated_types import Interval
 
 from sensors.rules import number
+from sensors.streams import Streams
 
 Triple = tuple[float, float, float]
 Unit = Literal["random", "typical", "ideal"]
@@ -47,6 +48,35 @@ def draw_error(generator: np.random.Generator, sd: float, limit: float, unit: Un
         return sd
     while True:
         error = float(generator.normal()) * sd
+        if abs(error) <= limit:
+            return error
+
+
+class Batch(NamedTuple):
+    """What the units of one batch have in common of an error: z = √s z_batch + √(1 - s) z_unit, of unit variance."""
+
+    share: float  # s, of the variance
+    common: float  # z_batch
+
+    @classmethod
+    def drawn(cls, share: float, streams: Streams, name: str) -> "Batch":
+        """Draw a batch; nothing is drawn where its units have nothing in common."""
+        return cls(share, float(streams(name).standard_normal()) if share > 0.0 else 0.0)
+
+
+NO_BATCH = Batch(0.0, 0.0)
+
+
+def draw_alike(generator: np.random.Generator, sd: float, limit: float, unit: Unit, batch: Batch) -> float:
+    """Return a turn-on error of one unit of a batch; parameters as of `draw_error`.
+
+    What the batch has in common is kept within the bound, too.
+    """
+    if unit != "random" or batch.share == 0.0 or sd == 0.0:
+        return draw_error(generator, sd, limit, unit)
+    common = sqrt(batch.share) * clip(sd * batch.common, -limit, limit)
+    while True:
+        error = common + sqrt(1.0 - batch.share) * float(generator.normal()) * sd
         if abs(error) <= limit:
             return error
 

@@ -1,9 +1,33 @@
 """Flights that many tests look at, flown once a session."""
 
+from typing import Any
+
 import pytest
 
 import uavsim
 from uavsim.flight import Flight
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--whole`: what `make certify` adds to the long checks."""
+    parser.addoption("--whole", action="store_true", help="all seeds of the long checks, not a fixed part of them")
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Print what the long checks measured, least … median … greatest, in whatever process they ran."""
+    reports = [report for outcome in ("passed", "failed") for report in terminalreporter.stats.get(outcome, ())]
+    lines = [value for report in reports if report.when == "call" for name, value in report.user_properties
+             if name == "measured"]  # fmt: skip
+    if lines:
+        terminalreporter.section("measured: least … median … greatest")
+        for line in lines:
+            terminalreporter.write_line(line)
+
+
+@pytest.fixture(scope="session")
+def whole(request: pytest.FixtureRequest) -> bool:
+    """Whether all seeds of the long checks are flown; else the first of them, which are always the same."""
+    return bool(request.config.getoption("--whole"))
 
 
 @pytest.fixture(scope="session")

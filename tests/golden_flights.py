@@ -247,6 +247,33 @@ FLIGHTS: dict[str, Wanted] = {
         "duration=4", *NOT_TWICE, "plant.launch_curve.ring_fraction=0.4", "plant.launch_curve.ring_hz=90",
         "plant.launch_curve.ring_phase_deg=200", "plant.launch_curve.ring_decay=0.08",
     )),
+    "torn-and-wet": ("catapult", 36, (
+        *NOT_TWICE, "duration=9", "air_data.static_port.tube.length=0.25", "air_data.batch=0.6",
+        port("total", 'kind="leak",start=6,stop=7.5,area=0.6'), port("static", 'kind="leak",start=7,area=2'),
+        'air_data.thermometer_faults=[{kind="invalid",start=5,stop=5.4},{kind="dead",start=8,size=400}]',
+    )),
+    "cover-left-on": ("catapult", 37, (*NOT_TWICE, "duration=6", "air_data.cover_left_on=true")),
+    "tubes-swapped": ("catapult", 38, (
+        *NOT_TWICE, "duration=6", "air_data.swapped_tubes=true", 'accelerometer.faults=[{kind="dead",start=5,size=2}]',
+    )),
+    "both-iced": ("catapult", 39, (
+        *NOT_TWICE, *CLIMB, "duration=12",
+        'air_data.port_faults=[{kind="ice",start=5,duration=1.5,between_heights=[12,200]}]',
+        'air_data.total.faults=[{kind="dead",start=10,size=90000}]',
+    )),
+    "course": ("manoeuvres", 34, (
+        *NOT_TWICE, "duration=15", "plant.flight_path.push=motor", "plant.flight_path.burn=2.5",
+        "launcher.peak_specific_force_g=5.5", "environment.wind_speed=5", "environment.wind_from_deg=80",
+        "environment.turbulence_wind_20ft=4", "plant.flight_path.wing_loading=20", "plant.flight_path.lift_slope=5.2",
+        "plant.flight_path.zero_lift_deg=-3", "plant.flight_path.span=2.4", "air_data.total_port.slipstream=0.03",
+        "plant.flight_path.legs=[{duration=2,airspeed=70,climb_deg=3,throttle=1},{duration=2,load_g=3,bank_deg=30},"
+        "{duration=2,load_g=0},{duration=3,bank_deg=-50,climb_deg=2}]",
+    )),
+    "thrown": ("manoeuvres", 35, (
+        *NOT_TWICE, "duration=6", "plant.flight_path.push=throw", "plant.flight_path.swing=0.25",
+        "launcher.peak_specific_force_g=9", "plant.flight_path.wing_loading=6",
+        "plant.flight_path.legs=[{duration=2,airspeed=17,climb_deg=8}]",
+    )),
     "tunnel-by-mach": ("mach06", 31, (
         "plant.wind_tunnel.machs=[0.2,0.45]", "plant.wind_tunnel.hold=1.5", "plant.wind_tunnel.ramp=0.3",
         "duration=7", *NOT_TWICE,

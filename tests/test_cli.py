@@ -24,7 +24,7 @@ from uavsim.scenario import packaged
 
 FILES = {"scenario.toml", "score.json", "events.json", *(f"{name}.parquet" for name in UNITS)}
 SHORT = ("--set", "duration=6", "--set", "requirements=[]", "--set", "expect=timeout", "--no-plots")
-PLOTS = {"plots/launch.png", "plots/pressure.png", "plots/airspeed.png", "plots/trajectory.png"}
+PLOTS = {"plots/launch.png", "plots/pressure.png", "plots/airspeed.png", "plots/trajectory.png", "plots/track.png"}
 COMMANDS = [command.callback.__name__ for command in cli.app.registered_commands if command.callback]
 
 
@@ -129,6 +129,25 @@ def test_a_part_on_the_bench(run: Run, tmp_path: Path) -> None:
     record = record_at_rest("bmp390", duration=180.0, seed=1)
     assert numbers["simulated"]["pressure"]["count"] == len(record)
     assert numbers["simulated"]["pressure"]["mean"] == pytest.approx(record["pressure"].mean(), rel=1e-12)
+
+
+def test_the_error_budget_of_a_part(run: Run, tmp_path: Path) -> None:
+    """A table in 80 columns, the same numbers as JSON, a folder where one is asked for and only there."""
+    result = run("sensors", "bmp280", "--budget", "--iir", "2", "--set", "air_data.tare=open")
+    assert (result.status, result.err) == (0, "")
+    assert "Error budget: bmp280 " in result.out
+    assert max(map(len, result.out.splitlines())) <= 80
+    assert not (tmp_path / "output").exists()
+    row = next(line for line in result.out.splitlines() if line.startswith("30 "))
+    told = json.loads(run("sensors", "bmp280", "--budget", "--iir", "2", "--set", "air_data.tare=open", "--json").out)
+    at = told["speed"].index(30.0)
+    assert row.split()[-1] == f"{told['airspeed_sd']['total'][at]:.3f}"
+    assert row.split()[2] == f"{told['airspeed_sd']['tare'][at]:.3f}"
+    saved = run("sensors", "--budget", "--out", "here")
+    assert saved.out.endswith("written to here\n")
+    assert written(tmp_path / "here") == {"budget.json", "budget.png"}
+    assert run("sensors", "--budget", "--out", "here", "--no-plots", "--overwrite").status == 0
+    assert written(tmp_path / "here") == {"budget.json"}
 
 
 def test_a_log_is_laid_over_a_part(run: Run, tmp_path: Path) -> None:
@@ -346,6 +365,11 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
         ("replay log.csv --set detector.treshold=1", "did you mean 'detector.threshold'?"),
         ("replay imu.csv --map t=time,fx=a[1],fy=z,fz=z --out full", "full is not empty"),
         ("sensors bmp39", "nearest: bmp390"),
+        ("sensors adxl345 --budget", "preset 'adxl345' is an accelerometer"),
+        ("sensors bmp390 --budget --rate 100", "is for the bench"),
+        ("sensors bmp390 --budget --iir 5", "iir 5 is unknown"),
+        ("sensors bmp390 --budget --set air_data.tare=never", "air_data.tare = 'never'"),
+        ("sensors bmp390 --set air_data.tare=open", "give --budget, too"),
         ("sensors ../sensors", "preset '../sensors' is unknown"),
         ("sensors properties.toml", "properties.toml: "),
         ("sensors bmp390 --hours -1", "--hours: -1.0: give a number of hours above 0, at most 1000"),

@@ -20,7 +20,7 @@ from pandas.testing import assert_frame_equal
 import uavsim
 from uavsim.cli import main
 from uavsim.cosim import CHUNK, Cosimulation, draw, plant_settings, replay
-from uavsim.flight import UNITS, Flight, load
+from uavsim.flight import DERIVED, UNITS, Flight, load
 from uavsim.plants.jsbsim import JsbsimPlant
 from uavsim.scenario import load_scenario
 from uavsim.views.plots import save_plots
@@ -308,6 +308,21 @@ def test_a_record_of_an_older_make_still_loads(folder: Path) -> None:
     flight = load(folder)
     old = Flight({**scenario, "requirements": [{"key": "gone", "maximum": 1.0}]}, flight.tables, flight.events)
     assert replay(old).score["requirements"][0]["met"] is False
+
+
+def test_a_record_without_the_columns_that_follow_from_others_loads_and_gets_them_by_replay(
+    short: Flight, folder: Path
+) -> None:
+    """A flight of an earlier version has neither calibrated nor equivalent airspeed, nor a reason of null."""
+    for name in ("truth", "estimate"):
+        file = folder / f"{name}.parquet"
+        pd.read_parquet(file).drop(columns=list(DERIVED)).to_parquet(file, index=False)
+    old = load(folder)
+    assert not set(DERIVED) & {*old.truth, *old.estimate}
+    again = replay(old)
+    for name in ("truth", "estimate"):
+        pd.testing.assert_frame_equal(again.tables[name], short.tables[name])
+    assert again.score["airspeed"] == short.score["airspeed"]
 
 
 @pytest.mark.parametrize("t", [[], [0.0], [0.0, 0.0], [0.0, math.nan], [0.0, math.inf], [-1e308, 1e308], [1.0, 0.0]])

@@ -37,9 +37,10 @@ Q = 'key="launch.latency",statistic="p95"'
         ('key="launch.latency",statistic="rate_per_hour",maximum=1,exposure="armed"', "counts launch.false_detections"),
         (
             'key="launch.false_detections",statistic="rate_per_hour",maximum=1',
-            "exposure is missing; it must be 'armed'",
+            "exposure is missing; it must be one of armed",
         ),
-        ('key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="flight"', "must be 'armed'"),
+        ('key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="flight"', "must be one of armed"),
+        ('key="airspeed.hazard",statistic="rate_per_hour",maximum=1,exposure="armed"', "must be one of flight"),
         (
             'key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="x"',
             "must be 'armed' or 'flight'",

@@ -9,10 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from uavsim import airdata
+from uavsim.airspeeds import of_estimate, of_pressures
+from uavsim.criteria import outcome, touchdown
+from uavsim.judged import Judged
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.plants.choice import PlantSettings
 from uavsim.scenario import Scenario
-from uavsim.score import Judged, outcome, score, touchdown
+from uavsim.score import score
+from uavsim.score_keys import PHASES, no_airspeed
 from uavsim.truth import STANDARD_GRAVITY
 
 RELEASE, EXIT, WINGS, OUT, MOTOR, END = 2.0, 2.4, 2.52, 2.8, 2.77, 12.0
@@ -245,7 +250,7 @@ def test_a_short_record_lacks_the_phases_it_did_not_reach() -> None:
     assert set(starts(made(end=1.9))) == {"rail"}
     result = score(made(end=4.0))["airspeed"]
     assert result["cruise"]["samples"] == 0
-    assert all(value is None for key, value in result["cruise"].items() if key != "samples")
+    assert result["cruise"] == no_airspeed() | {"samples": 0}
     assert result["stroke"]["samples"] > 0
 
 
@@ -329,6 +334,67 @@ def test_outcome_is_the_first_that_applies(expected: str, flight: dict[str, Any]
 def test_how_it_touched_is_told_in_one_line() -> None:
     flight = made(ended="touched", end=3.0, change=touching(sink=2.345, roll=-12.34, pitch=6.78))
     assert touchdown(flight) == "touched the ground at 3.00 s: sink 2.35 m/s, roll -12°, pitch 7°"
+
+
+@pytest.mark.parametrize(
+    ("flight", "said"),
+    [
+        (
+            {"change": setting("airspeed", AIM - 2.34, 9.0, 9.001)},
+            "true airspeed not held: -2.34 m/s off the set 32 m/s at 9.00 s, at most ±2 m/s over the last 5 s",
+        ),
+        (
+            {"change": setting("wing", 0.98, 8.0, 8.001)},
+            "wing not out: 0.98 at 8.00 s, at least 0.99 over the last 5 s",
+        ),
+        ({"events": with_event("motor_on", None)}, "motor never on"),
+        ({"events": with_event("motor_on", 7.5)}, "motor on too late: at 7.50 s, at the latest at 7.00 s"),
+        (
+            {"change": setting("roll", math.radians(-31.0), 11.0, 11.001)},
+            "bank too steep: 31.0° at 11.00 s, below 30° over the last 5 s",
+        ),
+        (
+            {"events": with_event("wings_commanded", 2.1)},
+            "wings commanded on the rail: at 2.100 s, the last shoe leaves the rail at 2.400 s",
+        ),
+        (
+            {"events": with_event("launch_detected", EXIT + 0.6)},
+            "launch recognised too late: 0.600 s after the last shoe has left, at most 0.5 s",
+        ),
+        ({"events": (), "change": setting("rail_s", 0.0, RELEASE)}, "the aircraft has not left its place"),
+        (
+            {"events": (), "change": setting("fx", 39.2, 0.0), "detector": {"kind": "altos"}},
+            "launch not recognised: greatest true specific force along +x 4.00 g, level of a launch 4.5 g",
+        ),
+        ({"ended": "diverged", "change": setting("roll", math.nan, 9.5)}, "the state is not finite: roll from 9.500 s"),
+        ({"expect": "timeout"}, "cruise all the same: wing out: 1.00 at "),
+    ],
+)
+def test_what_did_not_end_as_wanted_says_the_criterion_its_worst_value_and_the_bound(
+    flight: dict[str, Any], said: str
+) -> None:
+    told = score(made(**flight))["reason"]
+    assert told.startswith(said), told
+
+
+def test_every_criterion_that_is_not_met_is_told() -> None:
+    folded = score(made(change=holding(FOLDED, setting("airspeed", 25.0, 8.0)), events=with_event("motor_on", None)))
+    assert [said.split(":")[0] for said in folded["reason"].split("; ")] == [
+        "wing not out",
+        "motor never on",
+        "true airspeed not held",
+    ]
+
+
+def test_a_speed_that_nobody_on_board_knows_is_said() -> None:
+    slow = setting("airspeed", 25.0, 8.0)
+    lost = (*EVENTS, ("airspeed_lost", 6.5))
+    assert score(made(change=slow, events=lost))["reason"].endswith("; on board it was given up at 6.50 s")
+    assert "given up" not in score(made(change=slow, events=(*lost, ("airspeed_back", 7.0))))["reason"]
+
+
+def test_a_cruise_that_is_expected_needs_no_reason() -> None:
+    assert score(made())["reason"] is None
 
 
 def test_expected_outcome_is_the_scenarios() -> None:
@@ -585,11 +651,13 @@ def test_what_does_not_exist_is_null_and_not_zero() -> None:
         launch["true_time"], launch["detected_time"], launch["latency"], launch["latency_from_crossing"],
         flight["rail_exit_time"], flight["rail_exit_speed"], flight["rail_exit_altitude"], flight["cruise_airspeed"],
         flight["cruise_airspeed_sd"], flight["lowest_altitude_after_exit"],
-        *(airspeed[key] for key in airspeed if key not in ("estimator", "samples", "stroke", "transition", "cruise")),
-        *(airspeed[phase][key] for phase in ("stroke", "transition", "cruise") for key in airspeed[phase]
-          if key != "samples"),
+        *(airspeed[key] for key in ("losses", "hazard", "hazard_time")),
     ):  # fmt: skip
         assert value is None
+    counted = {"samples": 0}
+    for group in (airspeed, *(airspeed[phase] for phase in PHASES)):
+        assert {key: group[key] for key in no_airspeed()} == no_airspeed() | counted
+    assert (airspeed["flags"], airspeed["false_flags"]) == (0, 0)
     assert result["pressure"]["total"]["rmse"] is None
     assert airspeed["samples"] == 0
     assert launch["false_detections"] == 0
@@ -694,3 +762,122 @@ def test_nis_is_the_mean_over_both_pressures_and_white_innovations_pass() -> Non
     assert cruise["whiteness"] > 0.01
     estimate["nis_total"] = 1.0 + np.sin(3.0 * t)
     assert score(made(estimate=estimate))["airspeed"]["cruise"]["whiteness"] < 1e-6
+
+
+# -- calibrated and equivalent airspeed --------------------------------------------------------------------------------
+
+
+def high(speed: float = 40.0, static: float = 70_000.0, temperature: float = 260.0) -> dict[str, float]:
+    """Truth at a steady true airspeed, as a high field has it."""
+    return {
+        "airspeed": speed,
+        "p_static": static,
+        "p_total": airdata.total_at_airspeed(airspeed=speed, static=static, temperature=temperature),
+    }
+
+
+def test_calibrated_and_equivalent_airspeed_are_scored_beside_the_true_one() -> None:
+    """An estimate 2 m/s too fast at 70 kPa: ρ/ρ0 = 0.766, so EAS is 1.750 m/s too fast and CAS a little more."""
+    change = holding(*(setting(name, value, 0.0) for name, value in high().items()))
+    told = high(42.0)
+    flight = made(change=change)
+    table = flight.tables["estimate"]
+    for name in ("airspeed", "p_total"):
+        table[name] = np.full_like(table["t"], told[name])
+    figures = score(flight)["airspeed"]
+    ratio = math.sqrt(70_000.0 / (287.05287 * 260.0) / 1.225)
+    for part in (figures, figures["cruise"]):
+        assert part["bias"] == pytest.approx(2.0)
+        assert part["equivalent"] == pytest.approx(dict.fromkeys(("rmse", "bias", "max_error"), 2.0 * ratio), rel=1e-4)
+        assert part["calibrated"]["bias"] == pytest.approx(
+            airdata.calibrated_from_true(true=42.0, static=7e4, temperature=260.0)
+            - airdata.calibrated_from_true(true=40.0, static=7e4, temperature=260.0)
+        )
+        assert part["calibrated"]["bias"] > part["equivalent"]["bias"]
+
+
+def test_the_thermometer_is_no_error_of_the_calibrated_airspeed() -> None:
+    """A true airspeed 3 % too high by 17 K of a warm thermometer, from the right pressures: CAS is right."""
+    flight = made(change=holding(*(setting(name, value, 0.0) for name, value in high().items())))
+    table = flight.tables["estimate"]
+    table["airspeed"] = 1.03 * table["airspeed"]
+    figures = score(flight)["airspeed"]
+    assert figures["bias"] == pytest.approx(1.2)
+    assert abs(figures["calibrated"]["max_error"]) < 1e-9
+
+
+def test_pressures_that_are_none_have_no_airspeed() -> None:
+    total = np.array([-1.0, math.nan, 1e5, 3e5, math.inf, 1e5, 1e5])
+    static = np.array([1e5, 1e5, 1e5, 1e5, 1e5, -5.0, 2e5])
+    for found in of_pressures(total, static):
+        assert np.isnan(found[[0, 1, 3, 4, 5]]).all()
+        assert (found[[2, 6]] == 0.0).all()
+
+
+def test_an_estimator_of_ones_own_that_tells_an_airspeed_has_it_by_its_thermometer() -> None:
+    estimate = {"t": np.array([1.0, 2.0]), "airspeed": np.array([40.0, 40.0]), "p_static": np.array([7e4, 7e4])}
+    readings = {"t": np.array([1.5, 1.8]), "temperature": np.array([260.0, math.nan])}
+    scenario = Scenario.from_dict({"environment": {"humidity": 0.0}})
+    scenario = replace(scenario, estimator=replace(scenario.estimator, kind="somebody's"))
+    found = of_estimate(estimate, readings, scenario)
+    for i, temperature in enumerate((288.15, 260.0)):
+        at = {"true": 40.0, "static": 7e4, "temperature": temperature}
+        assert found.calibrated[i] == pytest.approx(airdata.calibrated_from_true(**at))
+        assert found.equivalent[i] == pytest.approx(airdata.equivalent_from_true(**at))
+
+
+# -- integrity ---------------------------------------------------------------------------------------------------------
+
+
+def misled(error: float, first: float, last: float, *, valid: bool = True) -> Judged:
+    """The plain flight, whose estimate is off by so much for a while."""
+    flight = made()
+    table = flight.tables["estimate"]
+    during = (table["t"] >= first) & (table["t"] < last)
+    table["airspeed"] = table["airspeed"] + np.where(during, error, 0.0)
+    table["valid"] = np.where(during, valid, True)
+    return flight
+
+
+@pytest.mark.parametrize(
+    ("error", "lasts", "valid", "hazard"),
+    [
+        (3.1, 1.1, True, True), (-3.1, 1.1, True, True), (2.9, 5.0, True, False), (30.0, 0.9, True, False),
+        (3.1, 1.1, False, False), (math.nan, 1.1, True, True),
+    ],
+)  # fmt: skip
+def test_a_hazard_is_a_valid_airspeed_3_mps_off_for_more_than_a_second(
+    error: float, lasts: float, valid: bool, hazard: bool
+) -> None:
+    figures = score(misled(error, 6.0, 6.0 + lasts, valid=valid))["airspeed"]
+    assert figures["hazard"] is hazard
+    assert figures["hazard_time"] == pytest.approx(lasts if valid and not abs(error) < 3.0 else 0.0, abs=0.02)
+    assert figures["losses"] == (0 if valid else 1)
+
+
+def test_a_break_divides_a_hazard() -> None:
+    flight = misled(5.0, 6.0, 7.6)
+    table = flight.tables["estimate"]
+    table["valid"] = table["valid"] & ~((table["t"] > 6.8) & (table["t"] < 6.82))
+    figures = score(flight)["airspeed"]
+    assert (figures["hazard"], figures["losses"]) == (False, 0)  # 20 ms are no loss
+    assert figures["hazard_time"] == pytest.approx(0.8, abs=0.03)
+
+
+def test_what_is_not_renewed_holds() -> None:
+    """The head falls silent at 32 m/s; the aircraft slows down, and what was told stays valid."""
+    flight = made(change=setting("airspeed", 25.0, 9.0))
+    table = flight.tables["estimate"]
+    flight.tables["estimate"].update({name: values[table["t"] < 8.0] for name, values in list(table.items())})
+    assert score(flight)["airspeed"]["hazard_time"] == pytest.approx(END - 9.0, abs=0.01)
+
+
+def test_flags_before_the_first_fault_are_false() -> None:
+    fault = {"air_data": {"total_port": {"faults": [{"kind": "blocked", "start": 6.0}]}}}
+    flags = (*EVENTS, ("airspeed_fault", 5.0), ("airspeed_recovered", 5.5), ("airspeed_fault", 7.0))
+    both = {"air_data": {"port_faults": [{"kind": "blocked", "start": 6.0}]}}
+    warm = {"air_data": {"thermometer_faults": [{"kind": "dead", "start": 4.0}]}}
+    covered, swapped = ({"air_data": {key: True}} for key in ("cover_left_on", "swapped_tubes"))
+    for scenario, false in ((fault, 1), ({}, 2), (both, 1), (warm, 0), (covered, 0), (swapped, 0)):
+        figures = score(made(events=flags, **scenario))["airspeed"]
+        assert (figures["flags"], figures["false_flags"]) == (2, false)

@@ -206,9 +206,8 @@ def _rail_wind(scenario: Scenario) -> dict[str, float]:
     if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.flies:
         return {}
     up = radians(launcher.elevation_deg)
-    height = launcher.height + scenario.air_data.position[0] * sin(up)
-    north, east = mean_wind(environment, height)
-    turbulent, _ = deviations(environment.turbulence_wind_20ft, height)
+    north, east = mean_wind(environment, launcher.height)
+    turbulent, _ = deviations(environment.turbulence_wind_20ft, launcher.height)
     sd = hypot(scenario.mismatch.gust * turbulent, share * DECLARED * hypot(north, east)) if share > 0.0 else 0.0
     if not sd > 0.0:
         return {}

@@ -24,9 +24,11 @@ from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
 from uavsim import __version__, part_range
 from uavsim.beliefs import NO_CALIBRATION, Calibration, believed_air, believed_flow, believed_noise, calibrated
+from uavsim.criteria import TOUCHED
 from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
 from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
+from uavsim.judged import Judged
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
 from uavsim.onboard.flow_through import FlowThrough
@@ -38,11 +40,12 @@ from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
 from uavsim.plants.plant import STEP_RATES, Plant, Run
 from uavsim.scenario import Scenario, load_scenario, with_kinds
-from uavsim.score import TOUCHED, Judged, score, touchdown
+from uavsim.score import score
 from uavsim.truth import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import numpy as np
+    import pandas as pd
     from numpy.typing import NDArray
 
 CHUNK = 500  # steps between two looks at the progress
@@ -307,7 +310,8 @@ class Cosimulation:
     def remarks(self) -> list[str]:
         """What of plant and air deserves a word, a line each; at the end there may be more of it."""
         said = [*part_range.remark(self.scenario), *getattr(self.plant, "remarks", ())]
-        if not self.scenario.plant.chosen.flies and moves(self.scenario.environment):
+        kind = self.scenario.plant.chosen
+        if not (kind.flies or kind.air) and moves(self.scenario.environment):
             said.append(
                 f"plant.kind = {self.scenario.plant.kind!r} is a rig: wind, turbulence and gusts do not reach it"
             )
@@ -423,9 +427,10 @@ def replay(flight: Flight) -> Flight:
     tables["detector"] = frame_of_rows("detector", onboard.detections(flight.accelerometer["t"].to_numpy()))
     tables = {name: tables[name] for name in flight.tables}
     ended = flight.score.get("outcome", "")
-    judged = Judged(scenario, tables, onboard.computer.events, draws.release_time, ended, _versions())
-    kept = {name: flight.score[name] for name in ("reason", "remarks") if name in flight.score}
-    return Flight(scenario.to_dict(), tables, onboard.computer.events, score(judged) | kept)
+    said = flight.score.get("reason") or ""
+    judged = Judged(scenario, tables, onboard.computer.events, draws.release_time, ended, _versions(), said)
+    kept = {name: flight.score[name] for name in ("remarks",) if name in flight.score}
+    return Flight(scenario.to_dict(), _derived(judged), onboard.computer.events, score(judged) | kept)
 
 
 def _flight(simulation: Cosimulation) -> Flight:
@@ -447,11 +452,21 @@ def _flight(simulation: Cosimulation) -> Flight:
         simulation.draws.release_time,
         simulation.ended,
         _versions(),
+        simulation.reason or plant.failure,
     )
-    reason = simulation.reason or plant.failure or (touchdown(judged) if simulation.ended == TOUCHED else "")
-    result = score(judged) | ({"reason": reason} if reason else {}) | {"remarks": simulation.remarks}
-    record = frame("truth", {**truth, "phase": judged.phases()})
-    return Flight(simulation.scenario.to_dict(), {"truth": record, **tables}, onboard.computer.events, result)
+    result = score(judged) | {"remarks": simulation.remarks}
+    return Flight(simulation.scenario.to_dict(), _derived(judged), onboard.computer.events, result)
+
+
+def _derived(judged: Judged) -> "dict[str, pd.DataFrame]":
+    """Return the tables of what was judged, with the columns that follow from others."""
+    tables = dict(judged.tables)
+    if "truth" in tables:
+        phase = {"phase": judged.phases(), **judged.true_airspeeds.columns()}
+        tables["truth"] = frame("truth", {**tables["truth"], **phase})
+    if "estimate" in tables:
+        tables["estimate"] = tables["estimate"].assign(**judged.told_airspeeds.columns())
+    return tables
 
 
 @cache

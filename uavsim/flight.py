@@ -21,8 +21,11 @@ if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
 
+DERIVED = {"calibrated_airspeed": "m/s", "equivalent_airspeed": "m/s"}
+"""Columns that follow from others after the flight (`uavsim.airspeeds`); a flight of an earlier version lacks them."""
+
 UNITS: dict[str, dict[str, str]] = {
-    "truth": {**TRUTH_UNITS, "phase": ""},
+    "truth": {**TRUTH_UNITS, "phase": "", **DERIVED},
     "accelerometer": {"t": "s", "fx": "m/s^2", "fy": "m/s^2", "fz": "m/s^2"},
     "air_data": {"t": "s", "p_total": "Pa", "p_static": "Pa", "temperature": "K", "t_total": "s", "t_static": "s"},
     "estimate": {
@@ -35,6 +38,7 @@ UNITS: dict[str, dict[str, str]] = {
         "valid": "",
         "nis_total": "1",
         "nis_static": "1",
+        **DERIVED,
     },
     "detector": {"t": "s", "level": "1", "count": "1", "total": "1", "triggered": "", "recognised": ""},
 }
@@ -197,7 +201,7 @@ def _read_table(name: str, file: Path) -> "pd.DataFrame":
 
     try:
         table = ParquetTable(look(file))
-        missing = [column for column in UNITS[name] if column not in table.names]
+        missing = [column for column in UNITS[name] if column not in table.names and column not in DERIVED]
         if not missing:
             found = table.frame([column for column in table.names if column in UNITS[name]], texts=("phase",))
             if name == "truth":
@@ -226,10 +230,10 @@ def frame(name: str, columns: "Mapping[str, np.ndarray]") -> "pd.DataFrame":
 
 
 def frame_of_rows(name: str, rows: list[tuple[Any, ...]]) -> "pd.DataFrame":
-    """Table `name` from rows of numbers and flags."""
+    """Table `name` from rows of numbers and flags, without the columns that follow from others."""
     import pandas as pd
 
-    table = pd.DataFrame.from_records(rows, columns=list(UNITS[name]))
+    table = pd.DataFrame.from_records(rows, columns=[column for column in UNITS[name] if column not in DERIVED])
     if not rows:
         return table.astype(float)
     told = {column: float for column in table if table[column].dtype == object}  # None is not a number

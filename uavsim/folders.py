@@ -24,8 +24,9 @@ OURS = frozenset({
     *("truth.parquet", "accelerometer.parquet", "air_data.parquet", "estimate.parquet", "detector.parquet"),
     *("scenario.toml", "score.json", "events.json", "campaign.json", "report.html", "plots", "flights", "runs.parquet"),
     *("inputs", "traces", "sweep.json", "sensitivity.json", "verify.json", "junit.xml", "rare.json", ".keeping"),
+    *("budget.json", "budget.png"),
 })  # fmt: skip
-"""What is in the folders of flights and campaigns, and so is replaced when one is written again."""
+"""What is in the folders of flights, campaigns and budgets, and so is replaced when one is written again."""
 
 UNFINISHED = ".unfinished"
 LOCK, OLD, STALE = ".lock", ".old", ".stale"

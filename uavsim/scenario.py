@@ -728,12 +728,19 @@ def _check_faults(s: Scenario) -> None:
         _check_order(f"{key}.faults", part.faults)
     _check_order("air_data.total_port.faults", s.air_data.total_port.faults)
     _check_order("air_data.static_port.faults", s.air_data.static_port.faults)
+    _check_order("air_data.port_faults", s.air_data.port_faults)
+    _check_order("air_data.thermometer_faults", s.air_data.thermometer_faults)
 
 
 def _check_order(key: str, faults: Iterable[Fault | PortFault]) -> None:
     for i, fault in enumerate(faults):
         if fault.stop <= fault.start:
             raise SettingError(f"{key}[{i}].stop = {fault.stop:g}: must be after its start, {fault.start:g} s", key)
+        band = fault.between_heights if isinstance(fault, PortFault) else None
+        if band is not None and band[0] >= band[1]:
+            raise SettingError(
+                f"{key}[{i}].between_heights = [{band[0]:g}, {band[1]:g}]: must be a band, low first", key
+            )
 
 
 def _parts(

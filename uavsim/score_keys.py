@@ -17,6 +17,9 @@ AIRSPEED = (
     *("coverage_95", "coverage_1_sigma", "coverage_2_sigma", "coverage_3_sigma", "valid_fraction", "samples"),
     *("nis_mean", "whiteness"),
 )
+SPEEDS = ("calibrated", "equivalent")
+OF_SPEED = ("rmse", "bias", "max_error")
+INTEGRITY = ("flags", "false_flags", "losses", "hazard", "hazard_time")
 PRESSURE = ("rmse", "rmse_raw", "reduction_percent", "bias", "nis_mean")
 PRESSURES = ("total", "static")
 FLIGHT = (
@@ -28,9 +31,16 @@ FLIGHT = (
 NUMBERS = (
     "seed",
     *(f"launch.{name}" for name in LAUNCH),
-    *(f"airspeed.{name}" for name in AIRSPEED),
+    *(f"airspeed.{name}" for name in (*AIRSPEED, *INTEGRITY)),
+    *(f"airspeed.{speed}.{name}" for speed in SPEEDS for name in OF_SPEED),
     *(f"airspeed.{phase}.{name}" for phase in PHASES for name in AIRSPEED),
+    *(f"airspeed.{phase}.{speed}.{name}" for phase in PHASES for speed in SPEEDS for name in OF_SPEED),
     *(f"pressure.{channel}.{name}" for channel in PRESSURES for name in PRESSURE),
     *(f"flight.{name}" for name in FLIGHT),
 )
 """Each by its key, joined by dots."""
+
+
+def no_airspeed() -> dict[str, object]:
+    """Return the figures of an airspeed of which nothing is known, with their names."""
+    return {**dict.fromkeys(AIRSPEED), **{speed: dict.fromkeys(OF_SPEED) for speed in SPEEDS}}

@@ -9,7 +9,10 @@ ROOT = Path(__file__).resolve().parents[2]
 
 FLIGHTS = "tests/test_golden_flights.py"
 STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "score": (("uavsim/score.py",), ("tests/test_score.py", FLIGHTS)),
+    "score": (
+        ("uavsim/score.py", "uavsim/judged.py", "uavsim/criteria.py", "uavsim/misleading.py"),
+        ("tests/test_score.py", FLIGHTS),
+    ),
     "cosim": (
         ("uavsim/cosim.py", "uavsim/beliefs.py"),
         (

@@ -264,7 +264,7 @@ def test_an_estimator_recovers_from_each_fault(kind: str, count: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ESTIMATORS)
-@pytest.mark.parametrize("count", [1, 5, 20, 50])
+@pytest.mark.parametrize("count", [1, *(pytest.param(n, marks=pytest.mark.certify) for n in (5, 20)), 50])
 @pytest.mark.parametrize("start", [2.2, START + 0.2, START + 1.2, START + 3.0])
 def test_an_estimator_recovers_from_each_fault_at_any_time(kind: str, count: int, start: float) -> None:
     each_fault(kind, count, start)

@@ -93,9 +93,10 @@ def test_a_flight_that_falls_says_how_it_touched(own: bool, wheeled: Path) -> No
     last = flight.truth.iloc[-1]
     assert flight.score["outcome"] == "crashed"
     assert flight.score["flight"]["duration"] < 12.0
-    assert flight.score["reason"] == (
+    assert flight.score["reason"].startswith(
         f"touched the ground at {last['t']:.2f} s: sink {last['vd']:.2f} m/s, "
-        f"roll {np.degrees(last['roll']):z.0f}°, pitch {np.degrees(last['pitch']):z.0f}°"
+        f"roll {np.degrees(last['roll']):z.0f}°, pitch {np.degrees(last['pitch']):z.0f}°; "
+        f"{last['north']:.0f} m ahead of the launcher"
     )
     again = replay(flight)
     assert again.score == flight.score
@@ -117,6 +118,7 @@ def test_an_aircraft_that_sinks_gently_has_landed(height: float, outcome: str) -
     assert f"sink {last['vd']:.2f} m/s" in flight.score["reason"]
 
 
-def test_a_flight_that_does_not_touch_has_no_reason() -> None:
+def test_a_flight_that_does_not_touch_does_not_say_so() -> None:
     flight = uavsim.fly("catapult", overrides=("duration=5", "requirements=[]"))
-    assert "reason" not in flight.score
+    assert flight.score["outcome"] == "timeout"
+    assert "touched" not in flight.score["reason"]

@@ -24,7 +24,7 @@ def test_no_fault_is_nothing_to_do():
     assert value_faults((), Streams(1), "static") is None
 
 
-@pytest.mark.parametrize("kind", ["dropout", "invalid", "stuck", "spike", "offset"])
+@pytest.mark.parametrize("kind", ["dropout", "invalid", "stuck", "dead", "spike", "offset"])
 def test_outside_its_time_a_fault_changes_nothing(kind):
     arrived = _arrived(Fault(kind, start=3.0, stop=4.0, size=9.0))
     assert arrived[:300] == READINGS[:300]
@@ -54,6 +54,14 @@ def test_stuck_repeats_the_last_value_before_it_with_new_time_stamps():
         assert reading == (*sent[:3], READINGS[299][3])
     everything = _arrived(Fault("stuck", start=3.0, stop=4.0))
     assert {reading[1:] for reading in everything[300:400]} == {READINGS[299][1:]}
+
+
+def test_a_dead_sensor_says_one_number_on_its_axis_with_new_time_stamps():
+    arrived = _arrived(Fault("dead", start=3.0, stop=4.0, size=-7.0, axis="y"))
+    for reading, sent in zip(arrived[300:400], READINGS[300:400], strict=True):
+        assert reading == (*sent[:2], -7.0, sent[3])
+    assert {reading[1:] for reading in _arrived(Fault("dead"))} == {(0.0, 0.0, 0.0)}
+    assert value_faults((Fault("dead", size=3.0),), Streams(1), "static")(0.5, 101_325.0) == 3.0
 
 
 def test_stuck_from_the_start_repeats_the_first_value():

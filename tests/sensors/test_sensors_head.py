@@ -137,6 +137,58 @@ def test_the_cover_hides_the_wind_until_it_is_off():
     assert rows[:, 2] == pytest.approx(101_325.0, abs=0.5)
 
 
+@pytest.mark.parametrize("tube", [0.0, 0.05])
+def test_a_cover_left_on_hides_the_wind_for_good(tube):
+    settings = _quiet(cover_left_on=True, pipe=tube)
+    head = AirDataHead(settings, Streams(7), covered_until=0.5, unit="ideal")
+    flow = _flow(total=101_925.0, force=(0.0, 0.0, 0.0))
+    rows = _tell(head, flow, 2.0) if head.full else _fly(head, lambda t: flow[:3], 2.0)
+    assert rows[5:, 1:3] == pytest.approx(101_325.0, abs=0.01)
+
+
+def test_swapped_tubes_bring_each_pressure_to_the_other_sensor():
+    """The airspeed's difference is negative. Each port keeps its own tube and faults."""
+    blocked = StaticPortSettings(faults=(PortFault("blocked", start=0.3),))
+    settings = _quiet(swapped_tubes=True, static_port=blocked)
+    head = AirDataHead(settings, Streams(1), covered_until=0.1, unit="ideal")
+    rows = _tell(head, lambda t: _flow(total=101_925.0 - 100.0 * t, static=101_325.0 - 100.0 * t), 1.0)[5:]
+    late = rows[:, 4] > 0.35
+    assert rows[late, 1] == pytest.approx(101_325.0 - 100.0 * 0.299, abs=1e-6)
+    assert rows[late, 2] == pytest.approx(101_925.0 - 100.0 * rows[late, 5], abs=1.0)
+    assert AirDataHead(QUIET, Streams(1)).full is False
+    assert AirDataHead(replace(QUIET, swapped_tubes=True), Streams(1)).full is True
+
+
+def test_both_ports_ice_at_once():
+    settings = _quiet(port_faults=(PortFault("ice", start=0.2, duration=0.2),))
+    head = AirDataHead(settings, Streams(1), unit="ideal")
+    rows = _tell(head, lambda t: _flow(total=101_925.0 - 500 * t, static=101_325.0 - 500 * t), 1.0)[5:]
+    shut = rows[:, [4, 5]].min(axis=1) > 0.41
+    assert np.ptp(rows[shut, 1]) == np.ptp(rows[shut, 2]) == 0.0
+    assert rows[-1, 1] - rows[-1, 2] == pytest.approx(600.0, abs=0.5)
+    assert rows[-1, 2] == pytest.approx(101_325.0 - 500 * 0.4, abs=20.0)  # nearly shut it lags
+
+
+def test_the_thermometer_breaks_by_itself():
+    """Not a number, silent, out of range: the pressures stay, and silence leaves the last value on the bus."""
+    faults = (
+        Fault("invalid", start=0.2, stop=0.3),
+        Fault("dropout", start=0.4, stop=0.5),
+        Fault("dead", start=0.6, stop=0.7, size=1000.0),
+    )
+    settings = replace(QUIET, thermometer_faults=faults)
+    rows = _fly(AirDataHead(settings, Streams(3), unit="ideal"), lambda t: (101_925.0, 101_325.0, 280.0 + 10 * t), 1.0)
+    sound = _fly(AirDataHead(QUIET, Streams(3), unit="ideal"), lambda t: (101_925.0, 101_325.0, 280.0 + 10 * t), 1.0)
+    t = rows[:, 0]
+    assert (rows[:, [1, 2, 4, 5]][5:] == sound[:, [1, 2, 4, 5]][5:]).all()
+    assert np.isnan(rows[(t >= 0.2) & (t < 0.3), 3]).all()
+    silent = rows[(t >= 0.4) & (t < 0.5), 3]
+    assert len(set(silent)) == 1
+    assert silent[0] == sound[t < 0.4, 3][-1]
+    assert set(rows[(t >= 0.6) & (t < 0.7), 3]) == {1000.0}
+    assert (rows[t >= 0.7, 3] == sound[t >= 0.7, 3]).all()
+
+
 def test_no_cover_by_default():
     rows = _fly(AirDataHead(QUIET, Streams(7), unit="ideal"), lambda t: (101_575.0, 101_325.0, 288.15), 0.2)[5:]
     assert rows[:, 1] == pytest.approx(101_575.0, abs=0.5)
@@ -491,6 +543,8 @@ PORT_FAULTS = st.lists(
         **START_STOP,
         duration=_span(0, 3600, **ABOVE_0),
         time_constant=_span(0, 3600, **ABOVE_0),
+        area=_span(0, 100),
+        below_temperature=st.none() | _span(150, 400),
         water_length=_span(0, 1, **ABOVE_0),
     ),
     max_size=2,
@@ -550,7 +604,7 @@ SENSORS = st.builds(
     faults=st.lists(
         st.builds(
             Fault,
-            kind=st.sampled_from(["dropout", "stuck", "spike", "offset"]),
+            kind=st.sampled_from(["dropout", "stuck", "dead", "spike", "offset"]),
             **START_STOP,
             probability=_span(0, 1),
             size=_span(-1e6, 1e6),
@@ -567,6 +621,10 @@ HEADS = st.builds(
     static_port=STATIC_PORTS,
     pipe=st.just(0.0) | _span(0, 10),
     acceleration_sensitivity=st.booleans(),
+    port_faults=PORT_FAULTS,
+    swapped_tubes=st.booleans(),
+    cover_left_on=st.booleans(),
+    batch=_span(0, 1),
     thermal=st.builds(
         ThermalSettings, self_heating=_span(0, 60), lag=_span(0, 3600, **ABOVE_0), powered_for=_span(0, 1e6)
     ),

@@ -248,7 +248,7 @@ def test_both_models_of_drift_have_the_same_floor():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("poles", [1, 2])
-@pytest.mark.parametrize("rate", [26.0, 833.0])
+@pytest.mark.parametrize("rate", [26.0, pytest.param(833.0, marks=pytest.mark.certify)])
 @pytest.mark.parametrize("share", [0.02, 0.1, 0.25, 0.45, 1.0])
 def test_white_noise_gives_its_n_back_at_any_rate_and_bandwidth(share, rate, poles):
     """20 figures: a false alarm in 5000 runs of the grid."""

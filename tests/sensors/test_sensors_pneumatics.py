@@ -1,7 +1,7 @@
 """The tube and the faults of a port, each alone.
 
 Authorities: Bergh & Tijdeman's equation and its published-form figures (table of gains and resonances at sea level,
-σ = 0, k = 1.4), Poiseuille, hydrostatics, scipy's first-order hold.
+σ = 0, k = 1.4), Poiseuille, hydrostatics, the flow through a sharp-edged hole, scipy's first-order hold.
 """
 
 from dataclasses import replace
@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 from scipy.signal import cont2discrete
 
 from sensors.pneumatics import (
@@ -249,19 +250,76 @@ def test_a_leak_behind_a_blocked_port_decays_with_its_time_constant(tube):
     assert out[after] - 9e4 == pytest.approx(1e4 * np.exp(-(t[after] - 0.099) / 0.25), rel=1e-9)
 
 
-def test_an_open_leaking_port_gives_a_steady_mixture():
+def _settled(tube, opening, area, port, bay):
+    """Pressure that a cavity between port, tube and a leak's hole comes to: its filling, integrated until it rests."""
+    section, density = 0.25 * pi * tube.diameter**2, 101_325.0 / (GAS_CONSTANT * 288.15)
+    friction = 128.0 * viscosity(288.15) * tube.length / (pi * tube.diameter**4)
+
+    def through(hole, drop):
+        return 0.61 * hole * section * np.sign(drop) * np.sqrt(2.0 * abs(drop) / density)
+
+    def into(pressure):
+        """Flow through hole and tube, whose losses add up to the drop; found by halving."""
+        low, high = 0.0, through(opening, abs(port - pressure))
+        for _ in range(100):
+            flow = 0.5 * (low + high)
+            lost = friction * flow + 0.5 * density * (flow / (0.61 * opening * section)) ** 2
+            low, high = (flow, high) if lost < abs(port - pressure) else (low, flow)
+        return np.sign(port - pressure) * 0.5 * (low + high)
+
+    def filling(_, pressure):
+        return 1.4 * 1e5 / tube.volume * (into(pressure[0]) - through(area, pressure[0] - bay))
+
+    return solve_ivp(filling, (0.0, 0.5), [0.5 * (port + bay)], method="LSODA", rtol=1e-8, atol=1e-6).y[0, -1]
+
+
+@pytest.mark.parametrize("opening", [1.0, 0.3])
+@pytest.mark.parametrize("area", [0.05, 1.0, 3.0])
+@pytest.mark.parametrize(
+    ("length", "diameter", "impact"), [(0.0, 2e-3, 400.0), (0.3, 2e-3, 400.0), (0.3, 2e-3, -600.0), (0.6, 1e-3, 4000.0)]
+)
+def test_a_leak_mixes_port_and_bay_as_the_flows_through_both_do(length, diameter, impact, area, opening):
+    """What the cavity comes to by its own differential equation: Poiseuille's tube, two sharp-edged holes."""
+    tube = TubeSettings(length=length, diameter=diameter, volume=1e-6)
+    line = Line(tube, AFT, (PortFault("leak"),), DT, **SEA_LEVEL)
+    found = 1e5 + line.share(impact, opening, area) * impact
+    assert found == pytest.approx(_settled(tube, opening, area, 1e5 + impact, 1e5), abs=2e-3 * abs(impact))
+
+
+@pytest.mark.parametrize("tube", [BARE, PIPE])
+def test_a_leak_alone_is_felt(tube):
+    """Torn off where it is short it halves 600 Pa; 0.3 m of 2 mm take 364, each hole 118. A pinhole takes nothing."""
+    torn = _run(_line(tube, (PortFault("leak", start=0.2),)), 500, port=1e5 + 600.0, bay=1e5)
+    sound = _run(_line(tube), 500, port=1e5 + 600.0, bay=1e5)
+    assert (torn[:200] == sound[:200]).all()
+    assert torn[250:] - 1e5 == pytest.approx(300.0 if tube is BARE else 118.1, rel=2e-3)
+    pinhole = _run(_line(tube, (PortFault("leak", area=0.0),)), 500, port=1e5 + 600.0, bay=1e5)
+    assert pinhole == pytest.approx(sound, abs=0.2)
+
+
+def test_a_pinhole_and_an_open_port_give_a_steady_mixture_of_two_laminar_flows():
     """τ₀/(T + τ₀) of the way to the bay; τ₀ the laminar lag and the hole's 0.1 ms. A narrow tube: most of the way."""
     narrow = TubeSettings(length=0.3, diameter=0.5e-3, volume=1e-7)
-    out = _run(_line(narrow, (PortFault("leak", time_constant=1e-3),)), 500)
+    out = _run(_line(narrow, (PortFault("leak", time_constant=1e-3, area=0.0),)), 500)
     tau = 1e-4 + laminar_lag(length=0.3, diameter=0.5e-3, volume=1e-7, **SEA_LEVEL, polytropic=1.4)
     assert out[-1] == pytest.approx((1e-3 * 1e5 + tau * 9e4) / (1e-3 + tau), abs=1e-6)
     assert out[-1] < 9.3e4
 
 
 def test_leaks_add_up():
-    two = _run(_line(PIPE, (PortFault("leak", time_constant=2e-3), PortFault("leak", time_constant=2e-3))), 500)
-    one = _run(_line(PIPE, (PortFault("leak", time_constant=1e-3),)), 500)
+    two = _run(_line(PIPE, (PortFault("leak", time_constant=2e-3, area=0.5),) * 2), 500)
+    one = _run(_line(PIPE, (PortFault("leak", time_constant=1e-3, area=1.0),)), 500)
     assert two == pytest.approx(one, abs=1e-6)
+
+
+def test_a_port_that_ices_while_it_leaks_goes_over_to_the_bay():
+    """Half open it leaves 1/(1/g² + 1) = a fifth, shut nothing; no jump on the way."""
+    faults = (PortFault("leak"), PortFault("ice", duration=2.0))
+    out = _run(_line(BARE, faults), 3000, port=1e5 + 500.0, bay=1e5) - 1e5
+    assert out[0] == pytest.approx(250.0, rel=1e-3)
+    assert out[1000] == pytest.approx(100.0, rel=0.01)
+    assert out[1990:] == pytest.approx(0.0, abs=0.1)
+    assert np.abs(np.diff(out)).max() < 1.0
 
 
 def test_ice_closes_gradually_and_then_holds():
@@ -277,6 +335,34 @@ def test_ice_closes_gradually_and_then_holds():
     assert behind[2000] == pytest.approx(1e3 * half, rel=0.05)  # g = 1/2: the lag is τ₀
     assert (out[3000:4000] == out[2999]).all()
     assert out[4499] == pytest.approx(clear[4499], abs=1e-6)
+
+
+def test_ice_grows_only_where_it_is_cold():
+    """It is below 0 °C from 1 s to 1.5 s and from 2 s on: of 1 s half has grown at 1.5 s, all of it at 2.5 s."""
+    line = _line(PIPE, (PortFault("ice", duration=1.0, stop=3.5, below_temperature=273.15),))
+    cold = [265.0 if 1.0 <= k * DT < 1.5 or k >= 2000 else 280.0 for k in range(4000)]
+    out = [line.step(k * DT, 1e5 + k * DT * 1e3, 1e5, cold[k], REST) for k in range(4000)]
+    clear = _run(_line(PIPE), 4000, port=lambda t: 1e5 + 1e3 * t)
+    half = 1e-4 + laminar_lag(length=0.3, diameter=2e-3, volume=1e-7, **SEA_LEVEL, polytropic=1.4)
+    behind = clear - out
+    assert behind[:1000] == pytest.approx(0.0, abs=1e-2)  # the air's column is of another temperature
+    assert behind[1600] == pytest.approx(1e3 * half, abs=0.02)
+    assert behind[1999] == pytest.approx(behind[1600], abs=0.01)
+    assert len(set(out[2502:3500])) == 1
+    assert out[3900] == pytest.approx(clear[3900], abs=0.1)
+
+
+def test_ice_grows_in_a_cloud_that_is_passed_in_a_descent():
+    """Between 300 m and 200 m of pressure height (97 773 and 98 945 Pa), sinking through it at 100 m/s in 1 s."""
+    line = _line(BARE, (PortFault("ice", start=0.5, duration=0.5, between_heights=(200.0, 300.0)),))
+    heights = 400.0 - 100.0 * np.arange(3000) * DT
+    bays = 101_325.0 * (1.0 - heights / 44330.77) ** (1.0 / 0.190263)
+    out = np.array([line.step(k * DT, bay + 500.0, bay, 280.0, REST) for k, bay in enumerate(bays.tolist())])
+    assert out[:900] == pytest.approx(bays[:900] + 500.0)
+    shut = int(np.flatnonzero(out != out[-1])[-1]) + 1
+    assert 400.0 - 0.1 * shut == pytest.approx(250.0, abs=1.0)
+    never = _line(BARE, (PortFault("ice", duration=0.5, between_heights=(500.0, 600.0)),))
+    assert [never.step(k * DT, bay, bay, 280.0, REST) for k, bay in enumerate(bays.tolist())] == bays.tolist()
 
 
 def test_a_plug_of_water_weighs():
@@ -348,7 +434,10 @@ FAULTS = st.builds(
     stop=st.floats(0, 0.05),
     duration=st.floats(0, 3600, exclude_min=True),
     time_constant=st.floats(0, 3600, exclude_min=True),
+    area=st.floats(0, 100),
     water_length=st.floats(0, 1, exclude_min=True),
+    below_temperature=st.none() | st.floats(150, 400),
+    between_heights=st.none() | st.tuples(st.floats(-5000, 11_000), st.floats(-5000, 11_000)),
 )
 TUBES = st.builds(
     TubeSettings,

@@ -8,7 +8,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sensors import PressureDescription, PressureErrors, PressureSensor, Streams, noise, preset, presets
+from sensors import (
+    AirDataHead,
+    AirDataSettings,
+    PressureDescription,
+    PressureErrors,
+    PressureSensor,
+    Streams,
+    noise,
+    preset,
+    presets,
+)
 from sensors.filters import DigitalFilter
 from sensors.settings import Fault, ThermalSettings
 
@@ -557,3 +567,18 @@ def test_finite_in_finite_out(
         low, high = part.range
         assert (rows[:, 0] >= low - part.resolution).all()
         assert (rows[:, 0] <= high + part.resolution).all()
+
+
+@pytest.mark.parametrize(("share", "low", "high"), [(0.0, -0.22, 0.22), (0.6, 0.46, 0.74), (1.0, 1.0, 1.0)])
+def test_parts_of_one_batch_drift_alike_with_temperature(share, low, high):
+    """Correlation of the pair's coefficients over 200 heads, ± 3 (1 - s²)/√200."""
+    chosen = AirDataSettings(batch=share)
+    heads = [AirDataHead(chosen, Streams(seed)) for seed in range(200)]
+    total = np.array([head.total.offset_tc for head in heads])
+    static = np.array([head.static.offset_tc for head in heads])
+    part = chosen.total.description()
+    assert low - 1e-9 <= np.corrcoef(total, static)[0, 1] <= high + 1e-9
+    for tc in (total, static):
+        assert np.abs(tc).max() <= part.offset_tc_limit
+        assert tc.std() == pytest.approx(part.offset_tc_sd, rel=0.2)
+    assert heads[3].total.offset == AirDataHead(AirDataSettings(), Streams(3)).total.offset  # other draws stay

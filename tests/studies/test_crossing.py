@@ -136,7 +136,7 @@ def test_the_band_holds_the_limit(shape: str, cells: int, runs: int, common: flo
 
 @pytest.mark.slow
 @pytest.mark.parametrize("common", [0.0, 0.5, 1.0])
-@pytest.mark.parametrize("runs", [60, 100, 300])
+@pytest.mark.parametrize("runs", [60, *(pytest.param(n, marks=pytest.mark.certify) for n in (100, 300))])
 def test_bands_hold_the_limit_whatever_cells_have_in_common(runs: int, common: float) -> None:
     """n = 2000: the band at least 0.95 by construction; the logistic interval 0.92, measured 0.93 … 0.95."""
     band, curve, count = held("logistic", 9, runs, common, 2000)

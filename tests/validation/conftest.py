@@ -1,7 +1,6 @@
 """Batches of flights that the longer checks share, and the figures that they measure, printed at the end of a run."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from uavsim.studies.batch import Batch, fly_seeds
 
 Figure = Callable[..., None]
 WORKERS = 2
-_measured: list[str] = []
 
 
 @pytest.fixture
@@ -23,7 +21,7 @@ def figure(request: pytest.FixtureRequest) -> Figure:
         assert sample.size
         found = f"{sample.min():.4g} … {np.median(sample):.4g} … {sample.max():.4g} {unit}".rstrip()
         line = f"{label}: {found} ({sample.size} flights; asked {low:g} … {high:g})"
-        _measured.append(f"{request.node.name}: {line}")
+        request.node.user_properties.append(("measured", f"{request.node.name}: {line}"))
         assert np.isfinite(sample).all(), line
         assert np.all((sample >= low) & (sample <= high)), line
 
@@ -31,17 +29,9 @@ def figure(request: pytest.FixtureRequest) -> Figure:
 
 
 @pytest.fixture
-def table() -> Callable[[str], None]:
+def table(request: pytest.FixtureRequest) -> Callable[[str], None]:
     """Put a line of a table into the summary."""
-    return _measured.append
-
-
-def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """Print what was measured: least … median … greatest."""
-    if _measured:
-        terminalreporter.section("measured: least … median … greatest")
-        for line in _measured:
-            terminalreporter.write_line(line)
+    return lambda line: request.node.user_properties.append(("measured", line))
 
 
 def flown(name: str, last: int, *overrides: str) -> Batch:

@@ -19,7 +19,7 @@ from uavsim.plants.air import moving
 from uavsim.plants.air.moving import MovingAir, State
 from uavsim.plants.air.settings import EnvironmentSettings
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.certify]
 
 Array = NDArray[np.float64]
 HEIGHTS, SPEEDS = (5.0, 60.0, 250.0), (8.0, 32.0, 90.0)  # m, m/s

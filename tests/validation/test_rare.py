@@ -20,6 +20,7 @@ from uavsim.studies.campaign.rare import Estimate, Inputs, Watch, estimate
 pytestmark = pytest.mark.slow
 
 N, SIGMA = 1000, 5.0
+CERTIFY = pytest.mark.certify  # one of each kind is enough for `make validate`
 NESTED = DetectorSettings(kind="multi-level-window", threshold=45.0, window=0.018, levels=4, ratio=0.8)
 SLIDING = DetectorSettings(kind="sliding-window", threshold=45.0, window=0.010, ratio=0.8)
 HOLD = DetectorSettings(kind="single-threshold", threshold=45.0, window=0.010)
@@ -59,7 +60,11 @@ def judged(name: str, found: list[Estimate], exactly: float) -> tuple[float, flo
 
 @pytest.mark.parametrize(
     ("name", "settings", "mean"),
-    [("nested", NESTED, 40.8522), ("sliding", SLIDING, 36.7247), ("hold", HOLD, 39.3143)],
+    [
+        pytest.param("nested", NESTED, 40.8522, marks=CERTIFY),
+        pytest.param("sliding", SLIDING, 36.7247, marks=CERTIFY),
+        ("hold", HOLD, 39.3143),
+    ],
 )
 def test_one_in_a_million_from_six_thousand_flights(name: str, settings: DetectorSettings, mean: float) -> None:
     watch = Watch(settings, np.full(N, mean), SIGMA, push=70.0)
@@ -69,7 +74,7 @@ def test_one_in_a_million_from_six_thousand_flights(name: str, settings: Detecto
     assert covered >= 0.90
 
 
-@pytest.mark.parametrize("mean", [43.0037, 42.2048, 41.4960, 40.2568])
+@pytest.mark.parametrize("mean", [*(pytest.param(m, marks=CERTIFY) for m in (43.0037, 42.2048, 41.4960)), 40.2568])
 def test_the_nested_windows_from_1e_3_to_1e_7(mean: float) -> None:
     watch = Watch(NESTED, np.full(N, mean), SIGMA, push=70.0)
     exactly = truth(NESTED, mean)
@@ -79,6 +84,7 @@ def test_the_nested_windows_from_1e_3_to_1e_7(mean: float) -> None:
     assert covered >= 0.85
 
 
+@CERTIFY
 def test_a_window_of_fifty_samples_is_at_the_edge() -> None:
     watch = Watch(WIDE, np.full(N, 41.2961), SIGMA, push=70.0)
     away, variation, _ = judged("50 samples, 1e-6", repeat(watch, 200), truth(WIDE, 41.2961))
@@ -97,7 +103,7 @@ def linear(beta: float, d: int) -> Callable[[NDArray[np.float64]], NDArray[np.fl
 BETA = 4.753424  # Φ(-β) = 1e-6
 
 
-@pytest.mark.parametrize("d", [2, 10, 20])
+@pytest.mark.parametrize("d", [pytest.param(2, marks=CERTIFY), 10, pytest.param(20, marks=CERTIFY)])
 def test_a_linear_limit_of_few_inputs(d: int) -> None:
     away, variation, covered = judged(
         f"linear, {d} inputs", repeat(Inputs(linear(BETA, d), d), 200), float(ndtr(-BETA))
@@ -115,6 +121,7 @@ def test_two_opposite_regions() -> None:
     assert covered >= 0.90
 
 
+@CERTIFY
 def test_a_linear_limit_of_many_inputs_by_subset_simulation_alone() -> None:
     problem = Inputs(linear(BETA, 200), 200)
     _, variation, covered = judged("linear, 200 inputs", repeat(problem, 200), float(ndtr(-BETA)))

@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 import uavsim
@@ -27,9 +28,40 @@ def test_quiet_sensors_cannot_be_helped_and_the_note_says_why() -> None:
 
 
 def test_untared_pair_is_a_bias_not_a_matter_of_the_filter() -> None:
-    found = notes(_fly("air_data.tare=none", "air_data.total.offset_pa=80"))
+    found = notes(_fly("estimator.kind=paper", "air_data.tare=none", "air_data.total.offset_pa=80"))
     assert any("mostly a bias" in n and "'none'" in n for n in found)
     assert not any("cannot help" in n for n in found)
+
+
+def _seen(flight: Flight, raw: float, filtered: float, **readings: float) -> Flight:
+    """The same flight with constant errors of both airspeeds, m/s, and constant pressures."""
+    truth = np.interp(flight.estimate["t"], flight.truth["t"], flight.truth["airspeed"])
+    estimate = flight.estimate.assign(airspeed=truth + filtered, airspeed_raw=truth + raw)
+    airspeed = flight.score["airspeed"] | {"rmse": abs(filtered), "bias": filtered, "rmse_raw": abs(raw)}
+    return dataclasses.replace(
+        flight,
+        tables={**flight.tables, "estimate": estimate, "air_data": flight.air_data.assign(**readings)},
+        score={**flight.score, "airspeed": airspeed},
+    )
+
+
+def test_a_bias_that_the_readings_have_not_is_the_estimators(catapult: Flight) -> None:
+    """20 m/s in the estimate and 0.1 in the readings, noise of 25 m/s beside it or not: no word of the sensors."""
+    flight = _seen(catapult, 0.1, 20.0)
+    loud = {**flight.score, "airspeed": flight.score["airspeed"] | {"rmse_raw": 25.0}}
+    for one in (flight, dataclasses.replace(flight, score=loud)):
+        found = notes(one)
+        assert not any("no filter takes away" in note for note in found)
+        assert any("+20.00 m/s off in the mean" in note and "+0.10 m/s" in note for note in found)
+    assert not any("off in the mean" in note for note in notes(_seen(catapult, 0.0, 0.3)))
+
+
+def test_a_bias_of_readings_at_the_end_of_their_range_is_not_blamed_on_the_tare(catapult: Flight) -> None:
+    (note,) = [n for n in notes(_seen(catapult, -12.0, -12.0, p_total=125_000.0)) if "mostly a bias" in n]
+    assert "the total pressure stands at its sensor's end, 125 kPa, in 100 % of readings" in note
+    assert "tare" not in note
+    (note,) = [n for n in notes(_seen(catapult, -12.0, -12.0)) if "mostly a bias" in n]
+    assert note.endswith("no filter takes away.")  # it was tared: nothing is known of why
 
 
 def test_a_filter_that_helps_needs_no_excuse(catapult: Flight, weak_launch: Flight) -> None:

@@ -14,20 +14,21 @@ from PIL import Image
 
 import uavsim
 from uavsim.flight import UNITS, Flight
+from uavsim.judged import Judged
 from uavsim.onboard.launch import DetectorSettings, build
 from uavsim.scenario import Scenario
-from uavsim.score import Judged, score
+from uavsim.score import score
 from uavsim.studies.batch import Batch
 from uavsim.studies.campaign.flown import ErrorTrace, row_of
 from uavsim.truth import STANDARD_GRAVITY
-from uavsim.views import launch, plots, pressure, trajectory
+from uavsim.views import launch, plots, pressure, track, trajectory
 from uavsim.views.curves import thin
 from uavsim.views.figure import BLUE, PHASES, RED, make_room, sheet
 from uavsim.views.marks import Mark, flags, stack
 from uavsim.views.record import Record
 
 RELEASE, END, PUSH = 2.0, 6.5, 76.0  # s, s, m/s^2 along the rail
-ALL = ["launch.png", "pressure.png", "airspeed.png", "trajectory.png"]
+ALL = ["launch.png", "pressure.png", "airspeed.png", "trajectory.png", "track.png"]
 
 
 def made_up(*, push: float = PUSH, end: float = END, seed: int = 1) -> Flight:
@@ -232,6 +233,28 @@ def path(axes: Axes) -> tuple[list[float], list[float]]:
     return [float(x) for pair in pairs for x in pair[0]], [float(y) for pair in pairs for y in pair[1]]
 
 
+def test_the_ground_track_is_to_scale_and_shows_the_whole_way(flight: Flight) -> None:
+    """An aircraft that drifts 60 m to the east of north, in a wind from the west: the way, the rail, the arrow."""
+    n = len(flight.truth)
+    way = {
+        "north": np.linspace(0.0, 300.0, n),
+        "east": np.linspace(0.0, 60.0, n),
+        "mean_wind_e": 5.0,
+        "mean_wind_n": 0.0,
+    }
+    tables = {**flight.tables, "truth": flight.truth.assign(**way)}
+    figure = track.draw(Record(dataclasses.replace(flight, tables=tables)))
+    assert figure is not None
+    (axes,) = figure.axes
+    x, y = path(axes)
+    assert (max(x), max(y)) == pytest.approx((60.0, 300.0), rel=0.01)
+    (left, right), (bottom, top), box = axes.get_xlim(), axes.get_ylim(), axes.get_window_extent()
+    assert left < min(x) < max(x) < right
+    assert bottom < min(y) < max(y) < top
+    assert (box.height / (top - bottom)) / (box.width / (right - left)) == pytest.approx(1.0)
+    assert "mean wind 5.0 m/s" in [text.get_text() for text in axes.texts]
+
+
 def test_readings_and_truth_are_drawn_where_they_are(flight: Flight) -> None:
     """The curves are the tables' numbers, in the units that the axes name."""
     figure = launch.draw(Record(flight))
@@ -288,6 +311,14 @@ def test_the_pressure_figure_says_tared_only_of_what_is(flight: Flight, tare: st
     assert len({name for name in labels if name.startswith("filtered")}) == 1
     notes = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert any("cover" in text for text in notes) is (tare == "covered")
+
+
+def test_a_prescribed_course_has_a_way_and_a_track() -> None:
+    flown = uavsim.fly("manoeuvres", seed=2, overrides=["duration=7"])
+    for view in (trajectory, track):
+        figure = view.draw(Record(flown))
+        assert figure is not None
+        assert "course" in {str(line.get_label()) for line in figure.axes[0].lines}
 
 
 def test_the_labels_of_many_faults_stay_out_of_the_path_above(flight: Flight) -> None:

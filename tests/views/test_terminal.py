@@ -206,6 +206,17 @@ def test_several_flights_fit_80_columns(capsys: pytest.CaptureFixture[str], flig
         assert band in lines[at + 1]
 
 
+def test_flights_that_misled_are_counted_of_those_that_had_an_airspeed(capsys: pytest.CaptureFixture[str]) -> None:
+    flown = batch(50)
+    flown.runs["airspeed.hazard"] = [1.0] * 2 + [0.0] * 38 + [np.nan] * 10
+    flown.runs["airspeed.false_flags"], flown.runs["airspeed.losses"] = 0.0, 3.0
+    terminal.print_batch(flown)
+    out = capsys.readouterr().out
+    assert "Flights with a valid airspeed 3 m/s off for 1 s: 2 (at most 16.92 %)" in out  # of 40
+    assert "Flights with a false flag: 0 (at most 7.11 %)" in out
+    assert "Flights with a loss of validity: 50 (at most 100.00 %)" in out
+
+
 def test_figures_that_no_flight_has_are_left_out(capsys: pytest.CaptureFixture[str]) -> None:
     flown = batch(3)
     flown.runs["launch.latency"] = np.nan

@@ -31,6 +31,12 @@ def sensors(
     mapping: Annotated[
         str | None, typer.Option("--map", metavar="OURS=THEIRS,...", help="Your columns, as t=time,fx=ax*9.80665.")
     ] = None,
+    budget: Annotated[
+        bool, typer.Option("--budget", help="Error budget of the airspeed of a pair, in place of the bench.")
+    ] = False,
+    override: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Of the budget: a scenario's key.")
+    ] = None,
     out: Out = None,
     overwrite: Overwrite = False,
     no_plots: NoPlots = False,
@@ -44,7 +50,19 @@ def sensors(
     Example: uavsim sensors bmp390
 
     Example: uavsim sensors adxl345 --hours 1 --compare log.csv --map t=time,fx=ax,fy=ay,fz=az
+
+    Example: uavsim sensors bmp280 --budget --set air_data.tare=open
     """
+    if budget:
+        bench = {"--compare": compare, "--map": mapping, "--rate": rate, "--range-g": range_g, "--filter": low_pass}
+        for option, value in bench.items():
+            if value is not None:
+                raise typer.BadParameter("is for the bench, which --budget is in place of", param_hint=option)
+        settings = {"preset": name, "mode": mode, "iir": iir, "noise_scale": noise_scale}
+        _budget(settings, override or [], out, overwrite=overwrite, plots=not no_plots, as_json=as_json)
+        return
+    if override:
+        raise typer.BadParameter("sets keys of the budget: give --budget, too", param_hint="--set")
     from uavsim.views import datasheets, documents, terminal
 
     if name is None:
@@ -83,3 +101,37 @@ def sensors(
         return
     datasheets.print_bench(measured)
     terminal.say(f"written to {place.target}")
+
+
+def _budget(
+    settings: dict[str, str | float | None],
+    override: list[str],
+    out: Path | None,
+    *,
+    overwrite: bool,
+    plots: bool,
+    as_json: bool,
+) -> None:
+    """Print the error budget of a pair, by default the one of the packaged scenarios; write it where that is asked."""
+    from sensors.catalogue import pressure_sensor
+    from uavsim.scenario import load_scenario
+    from uavsim.studies.error_budget import of_scenario
+    from uavsim.views import documents, error_budget, terminal
+
+    if settings["preset"] is not None:
+        with user_input():
+            pressure_sensor(str(settings["preset"]))
+    given = {key: value for key, value in settings.items() if value is not None}
+    keys = [f"air_data.{port}.{key}={value}" for port in ("total", "static") for key, value in given.items()]
+    with user_input():
+        found = of_scenario(load_scenario("catapult", overrides=[*keys, *override]))
+    if as_json:
+        document(documents.plain(found.numbers()))
+    else:
+        error_budget.print_budget(found)
+    if out is None:
+        return
+    with folder(out, "sensors-budget", overwrite=overwrite) as place:
+        error_budget.save_budget(found, place.folder, plots=plots)
+    if not as_json:
+        terminal.say(f"written to {place.target}")

@@ -17,7 +17,7 @@ from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
 from uavsim.onboard.launch.guarded import STATE
 from uavsim.plugins import plugged_in
-from uavsim.score_keys import AIRSPEED, FLIGHT, PHASES, PRESSURE, PRESSURES
+from uavsim.score_keys import FLIGHT, INTEGRITY, PHASES, PRESSURE, PRESSURES, no_airspeed
 
 LOT = 50_000  # readings that are plain numbers at once
 PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
@@ -105,10 +105,10 @@ def _rows(readings: Array) -> Iterator[list[float]]:
 
 def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str, Any]:
     start, end = recording.span
-    nothing = dict.fromkeys(AIRSPEED)
     return {
         "outcome": None,
         "expected": None,
+        "reason": None,
         "seed": None,
         "plugins": [without_none(asdict(source)) for source in plugged_in({"detector": kind})],
         "versions": {"uavsim": __version__, "numpy": version("numpy")},
@@ -123,7 +123,12 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
             "false_detections": None,
             "detector": kind,
         },
-        "airspeed": {"estimator": None, **nothing, **{phase: dict(nothing) for phase in PHASES}},
+        "airspeed": {
+            "estimator": None,
+            **no_airspeed(),
+            **dict.fromkeys(INTEGRITY),
+            **{phase: no_airspeed() for phase in PHASES},
+        },
         "pressure": {name: dict.fromkeys(PRESSURE) for name in PRESSURES},
         "flight": {**dict.fromkeys(FLIGHT), "duration": end - start},
         "requirements": [],

@@ -10,6 +10,7 @@ from uavsim.plants.in_jsbsim import NAME
 from uavsim.plants.kinds import KINDS, Kind
 from uavsim.plants.plant import STEP_RATES, Plant
 from uavsim.plants.rigs.centrifuge import CentrifugeSettings
+from uavsim.plants.rigs.flight_path import FlightPathSettings
 from uavsim.plants.rigs.launch_curve import LaunchCurveSettings
 from uavsim.plants.rigs.wind_tunnel import WindTunnelSettings
 
@@ -38,6 +39,7 @@ class PlantSettings:
     launch_curve: LaunchCurveSettings = field(default_factory=LaunchCurveSettings)
     centrifuge: CentrifugeSettings = field(default_factory=CentrifugeSettings)
     wind_tunnel: WindTunnelSettings = field(default_factory=WindTunnelSettings)
+    flight_path: FlightPathSettings = field(default_factory=FlightPathSettings)
     options: dict[str, Any] | None = field(default=None, hash=False)
 
     @property

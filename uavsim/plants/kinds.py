@@ -40,6 +40,10 @@ class Kind:
         Whether its push makes an airframe ring: vibration grows with it.
     launches : bool
         Whether its load comes as a launch's does, within a fraction of a second.
+    air : bool
+        Whether wind, turbulence and gusts of the environment reach it; an aircraft's do.
+    launcher : tuple of str
+        Keys of the launcher that a rig reads beside the wait and the height.
     ours : bool
         Whether it comes with uavsim; others are guarded (`guarded`).
     """
@@ -51,6 +55,8 @@ class Kind:
     flies: bool = False
     rings: bool = False
     launches: bool = True
+    air: bool = False
+    launcher: tuple[str, ...] = ()
     ours: bool = False
 
 

@@ -14,7 +14,8 @@ A single flight is judged by what asks each flight, `every`; the others are judg
 **A flight without a value** (null in the score, NaN in a row) never helps. It meets no bound of `every`. Of a
 `probability` it counts against what is asked: as no event under `at_least`, as an event under `at_most`. Of a quantile
 it counts as the worst value, +inf under a maximum, -inf under a minimum. A `mean` over flights of which one has no
-value does not exist: the requirement stays undecided, and the number of such flights is said.
+value does not exist: the requirement stays undecided, and the number of such flights is said. Of a `rate_per_hour` it
+counts as one event, unless it has no exposure.
 
 **Exposure** is in hours, of one flight:
 
@@ -39,8 +40,12 @@ Exposure = Literal["armed", "flight"]
 
 PACKAGED = Path(__file__).resolve().parent
 OUTCOME = "outcome"  # the one key of the score that is no number and may be asked for
-COUNTS = ("launch.false_detections",)  # numbers of events, which a rate may be of
-ARMED_COUNTS = ("launch.false_detections",)  # those that only count while the detector is armed
+COUNTS = (  # numbers of events, which a rate may be of
+    *("launch.false_detections", "airspeed.flags", "airspeed.false_flags", "airspeed.losses", "airspeed.hazard"),
+)
+FLOWN = ("armed", "flight")  # exposures of a flight itself
+ALLOWED = {OUTCOME: FLOWN, "launch.false_detections": ("armed",), **dict.fromkeys(COUNTS[1:], ("flight",))}
+"""Exposures in which something can happen."""
 STATISTICS = ("every", "probability", "p50", "p95", "p99", "mean", "rate_per_hour")
 QUANTILE = re.compile(r"p([0-9]{1,2}(?:\.[0-9]{1,3})?)")
 BOUNDS = ("equals", "minimum", "maximum", "at_least", "at_most", "exposure")
@@ -256,16 +261,16 @@ def _check_event(r: Requirement) -> str:
     where, counts = f" ({r.key})", r.kind == "rate_per_hour"
     if r.kind not in ("probability", "rate_per_hour"):
         return ""
-    if counts and r.exposure is None:
-        return f"{where}: exposure is missing; it must be {' or '.join(map(repr, get_args(Exposure)))}"
+    if counts and r.exposure not in ALLOWED[r.key]:
+        said = "exposure is missing; it" if r.exposure is None else f"exposure = {r.exposure!r}:"
+        return f"{where}: {said} must be one of {', '.join(ALLOWED[r.key])}"
     if r.key == OUTCOME:
         return _check_outcome(r)
     if r.equals is not None:
         return f"{where}: equals is for outcome; a number has minimum and maximum"
     if not counts and r.minimum is None and r.maximum is None:
         return f"{where}: needs minimum or maximum, or both, to say which values are the event"
-    wrong = counts and r.key in ARMED_COUNTS and r.exposure != "armed"
-    return f"{where}: exposure must be 'armed': it counts nothing after the release" if wrong else ""
+    return ""
 
 
 def _check_outcome(r: Requirement) -> str:

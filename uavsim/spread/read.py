@@ -7,9 +7,7 @@ from uavsim.onboard.airspeed.kinds import is_aided
 from uavsim.onboard.launch.settings import if_known
 
 OF_EVERY_RUN = ("launcher.wait_min", "launcher.wait_max", "launcher.height")
-OF_A_CURVE = ("peak_specific_force_g", "force_factor", "force_spread", "elevation_deg", "heading_deg")
 IN_THE_AIR = ("wind", "turbulence", "gust", "roughness")  # what keys of the environment begin with that moves the air
-ON_A_CURVE = "launch-curve"
 
 
 def unread(scenario: Any, key: str) -> str:
@@ -32,9 +30,9 @@ def _flown(scenario: Any, key: str, name: str) -> str:
     chosen = scenario.plant.chosen
     if chosen.flies or not chosen.ours or key in OF_EVERY_RUN:
         return ""
-    if key.startswith("environment.") and not name.startswith(IN_THE_AIR):
+    if key.startswith("environment.") and (chosen.air or not name.startswith(IN_THE_AIR)):
         return ""
-    if key.startswith("launcher.") and chosen.name == ON_A_CURVE and name in OF_A_CURVE:
+    if key.startswith("launcher.") and name in chosen.launcher:
         return ""
     return f"is not read by plant.kind = {chosen.name!r}, a rig"
 

@@ -156,6 +156,12 @@ class FaultFlight:
 
 def fly_case(case: Case, seed: int, extra: tuple[str, ...] = ()) -> FaultFlight:
     """Fly one flight of a case."""
+    begins, flight = flown_case(case, seed, extra)
+    return _judge(case, seed, begins + case.late, flight)
+
+
+def flown_case(case: Case, seed: int, extra: tuple[str, ...] = ()) -> tuple[float, Cosimulation]:
+    """Fly one flight of a case; return when its fault began, s (NaN if it has none), and the flight to its end."""
     begins = nan
     overrides = [*case.overrides, *extra]
     if case.where is not None:
@@ -169,7 +175,7 @@ def fly_case(case: Case, seed: int, extra: tuple[str, ...] = ()) -> FaultFlight:
         flight.advance(round(when * flight.scenario.plant.step_rate) - flight.plant.k)
         computer.settings = replace(computer.settings, **{setting: value})
     flight.advance(flight.steps)
-    return _judge(case, seed, begins + case.late, flight)
+    return begins, flight
 
 
 def _judge(case: Case, seed: int, fault: float, flown: Cosimulation) -> FaultFlight:

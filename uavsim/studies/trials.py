@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 from sensors import Accelerometer, Streams, Vibration
 from uavsim.cosim import draw, make_plant
 from uavsim.dispersions import resolved
+from uavsim.judged import Judged
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.scenario import Scenario
-from uavsim.score import Judged
 from uavsim.studies.detections import BatchDetector
 from uavsim.studies.signals import LaunchSettings, LaunchTruth, record_launches
 from uavsim.truth import STANDARD_GRAVITY as G0

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from uavsim.onboard.airspeed.kinds import is_aided
+from uavsim.set_faults import set_faults
 from uavsim.studies.airspeed_flights import bound, course, together
 from uavsim.views import curves
-from uavsim.views.faults import set_faults
 from uavsim.views.figure import BLACK, BLUE, PHASES, RED, label, legend, sheet, tint
 from uavsim.views.marks import flag_all
 from uavsim.views.record import Array, Record, Stretch

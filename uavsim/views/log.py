@@ -47,7 +47,7 @@ def lines(flight: "Flight") -> list[str]:
         for clipped in of["clipping"]
     ]
     said += [f"Warning: {remark}" for remark in of["remarks"]]
-    said += [f"Warning: {flight.score['reason']}; what comes after is not read"] if "reason" in flight.score else []
+    said += [f"Warning: {flight.score['reason']}; what comes after is not read"] if flight.score["reason"] else []
     kind = flight.score["launch"]["detector"]
     if not found:
         return [*said, f"{kind}: no launch detected; the greatest f_x is {_greatest(flight)}"]

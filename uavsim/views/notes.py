@@ -6,7 +6,8 @@ import numpy as np
 
 from uavsim.onboard.airspeed.kinds import is_aided
 from uavsim.scenario import Scenario, scenario_of
-from uavsim.views.faults import noticed, set_faults, told
+from uavsim.set_faults import set_faults
+from uavsim.views.faults import noticed, told
 
 if TYPE_CHECKING:
     from uavsim.flight import Flight
@@ -17,6 +18,9 @@ LITTLE = 5.0  # %, a reduction of the RMSE that is not worth a filter
 QUIET = 0.5  # share of the lag below which a sensor's noise is too little to be worth it
 FINDINGS = 6  # that are told one by one
 MOSTLY = 0.7  # share of the RMSE that makes the bias the story
+HALF = 0.5  # share of the estimate's bias that the readings must have for it to be theirs
+ASTRAY = 1.0  # m/s, bias of an estimate whose readings have none that is worth a word
+OFTEN = 0.1  # share of readings at the end of a sensor's range that tells where an error comes from
 
 
 def notes(flight: "Flight") -> list[str]:
@@ -86,18 +90,55 @@ def _lag(flight: "Flight", scenario: Scenario) -> str:
 
 
 def _bias(flight: "Flight", scenario: Scenario) -> str:
-    """Say that an error is one that no filter takes away."""
+    """Say where an error comes from that is mostly a bias: from the readings, and why, or from the estimator."""
     airspeed = flight.score["airspeed"]
     if not airspeed["rmse"] or abs(airspeed["bias"]) < MOSTLY * airspeed["rmse"]:
         return ""
-    if airspeed["rmse_raw"] is not None and abs(airspeed["bias"]) > airspeed["rmse_raw"]:
-        return ""  # the readings have no such bias: the filter is wrong
+    raw = _raw_bias(flight)
+    if raw is None or raw * airspeed["bias"] < HALF * airspeed["bias"] ** 2:
+        return _astray(airspeed["bias"], raw)
+    said = f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s"
     if set_faults(scenario):
-        return f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, a fault having been set."
+        return f"{said}, a fault having been set."
+    return f"{said}, which the readings have, too, and no filter takes away{_cause(flight, scenario)}."
+
+
+def _raw_bias(flight: "Flight") -> float | None:
+    """Mean error of the airspeed of the readings over the rows that are scored, m/s; None if there is none."""
+    truth, estimate = flight.truth, flight.estimate
+    time = truth["t"].to_numpy(float)
+    scored = truth["phase"].to_numpy(object) != "rail"
+    if not scored.any():
+        return None
+    told = estimate[estimate["t"] >= time[scored][0]]
+    error = told["airspeed_raw"].to_numpy(float) - np.interp(told["t"], time, truth["airspeed"])
+    error = error[np.isfinite(error)]
+    return float(error.mean()) if error.size else None
+
+
+def _astray(bias: float, raw: float | None) -> str:
+    """Say that it is the estimator which is off and not the readings, where that is worth a word."""
+    if raw is None or abs(bias) < ASTRAY:
+        return ""
     return (
-        f"the airspeed error is mostly a bias of {airspeed['bias']:.2f} m/s, which no filter takes away "
-        f"(air_data.tare is {scenario.air_data.tare!r})."
+        f"the estimate is {bias:+.2f} m/s off in the mean and the airspeed of the readings {raw:+.2f} m/s: it is the "
+        "estimator that is off, not the sensors."
     )
+
+
+def _cause(flight: "Flight", scenario: Scenario) -> str:
+    """Name what makes the readings' bias as far as they show it: the end of a range, or a pair that nobody tared."""
+    air = scenario.air_data
+    for name, settings in (("total", air.total), ("static", air.static)):
+        part = settings.description()
+        values = flight.air_data[f"p_{name}"].to_numpy(float)
+        step = max(part.noise_sd, 1.0)
+        low, high = (float(np.mean(np.abs(values - end) <= step)) for end in part.range)
+        if max(low, high) > OFTEN:
+            end = part.range[1] if high >= low else part.range[0]
+            share = 100.0 * max(low, high)
+            return f": the {name} pressure stands at its sensor's end, {end / 1e3:g} kPa, in {share:.0f} % of readings"
+    return " (air_data.tare is 'none': nobody has tared the pair)" if air.tare == "none" else ""
 
 
 def _no_help(flight: "Flight", scenario: Scenario) -> str:

@@ -214,14 +214,16 @@ def draw_levels(found: Operating) -> "Figure":
         gap=(0.5, 0.5),
     )
     panels = [panel for row in axes for panel in row]
-    for panel, (name, rows) in zip(panels, curves, strict=False):
-        _draw_level(panel, name, rows)
+    for i, (panel, (name, rows)) in enumerate(zip(panels, curves, strict=False)):
+        last = i % COLUMNS == COLUMNS - 1 or i == len(curves) - 1
+        _draw_level(panel, name, rows, left=i % COLUMNS == 0, right=last)
     for panel in panels[len(curves) :]:
         panel.set_visible(False)
     return figure
 
 
-def _draw_level(axes: "Axes", name: str, rows: "pd.DataFrame") -> None:
+def _draw_level(axes: "Axes", name: str, rows: "pd.DataFrame", *, left: bool, right: bool) -> None:
+    """Draw one detector; only panels at the edges of a row name their scales, which all of them have."""
     x, key = rows["level"].to_numpy(), str(rows["key"].iloc[0])
     axes.fill_between(x, rows["pd_low"], rows["pd_high"], color=GREY, alpha=0.4, linewidth=0.0)
     axes.plot(x, rows["pd"], color=BLACK, marker=".", linewidth=1.2)
@@ -234,16 +236,18 @@ def _draw_level(axes: "Axes", name: str, rows: "pd.DataFrame") -> None:
     axes.axvline(own, color=GREY, linestyle="--", linewidth=1.0)
     axes.set_title(name, fontsize=SMALL, loc="left")
     unit = str(rows["unit"].iloc[0])
-    label(axes, None, f"{key}, {unit}" if unit else key)
-    right = axes.twinx()
+    label(axes, "probability of detection" if left else None, f"{key}, {unit}" if unit else key)
+    beside = axes.twinx()
     rate, some = _rate(rows, "mix")
-    right.set_yscale("log")
-    right.fill_between(x, np.maximum(rows["mix.low"], 1e-6), rows["mix.high"], color=RED, alpha=0.25, linewidth=0.0)
-    right.plot(x, rate, color=RED, linewidth=1.0)
-    right.scatter(x, rate, s=12.0, edgecolors=RED, facecolors=np.where(some, RED, "none"), zorder=3)
-    right.set_ylim(0.2 * NONE / float(rows["mix.hours"].iloc[0]), 1e5)
-    right.tick_params(labelsize=SMALL, colors=RED)
-    right.spines["top"].set_visible(False)
+    beside.set_yscale("log")
+    beside.fill_between(x, np.maximum(rows["mix.low"], 1e-6), rows["mix.high"], color=RED, alpha=0.25, linewidth=0.0)
+    beside.plot(x, rate, color=RED, linewidth=1.0)
+    beside.scatter(x, rate, s=12.0, edgecolors=RED, facecolors=np.where(some, RED, "none"), zorder=3)
+    beside.set_ylim(0.2 * NONE / float(rows["mix.hours"].iloc[0]), 1e5)
+    beside.tick_params(labelsize=SMALL, colors=RED)
+    beside.spines["top"].set_visible(False)
+    if right:
+        beside.set_ylabel("false alarms, 1/h", fontsize=SMALL, color=RED)
 
 
 FIGURES: dict[str, Callable[[Operating], "Figure"]] = {

@@ -1,4 +1,4 @@
-"""One flight's plots: launch, pressure, airspeed, trajectory; of a centrifuge its run.
+"""One flight's plots: launch, pressure, airspeed, trajectory, track; of a centrifuge its run.
 
 What a recording or a rig lacks is left out. Equal flights give equal files, byte for byte, with equal versions of
 matplotlib.
@@ -7,7 +7,7 @@ matplotlib.
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from uavsim.views import airspeed, centrifuge, launch, pressure, trajectory
+from uavsim.views import airspeed, centrifuge, launch, pressure, track, trajectory
 from uavsim.views.figure import save
 from uavsim.views.record import Record
 
@@ -20,6 +20,7 @@ FIGURES = {
     "pressure": pressure.draw,
     "airspeed": airspeed.draw,
     "trajectory": trajectory.draw,
+    "track": track.draw,
 }
 
 
@@ -34,8 +35,8 @@ def save_plots(flight: "Flight", folder: Path) -> list[Path]:
     Returns
     -------
     list of Path
-        Those of `launch.png`, `centrifuge.png`, `pressure.png`, `airspeed.png` and `trajectory.png` for which there
-        are data.
+        Those of `launch.png`, `centrifuge.png`, `pressure.png`, `airspeed.png`, `trajectory.png` and `track.png` for
+        which there are data.
     """
     folder.mkdir(parents=True, exist_ok=True)
     record = Record(flight)

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.judged import CROSSING
 from uavsim.scenario import Scenario, scenario_of
-from uavsim.score import CROSSING
+from uavsim.set_faults import set_faults
 from uavsim.truth import STANDARD_GRAVITY
-from uavsim.views.faults import noticed, set_faults
+from uavsim.views.faults import noticed
 from uavsim.views.figure import BLACK, BLUE, GREY, PHASES, RED
 from uavsim.views.marks import Mark
 

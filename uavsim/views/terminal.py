@@ -102,11 +102,12 @@ def print_score(flight: "Flight") -> None:
     head = words("\n", (scenario.name, "bold"), f", seed {score['seed']}: ", outcome, f" ({verdict})\n")
     _print(console, head, _launch_table(score, scenario), "")
     if score.get("reason"):
-        _print(console, words("reason: ", score["reason"]), "")
+        console.print(f"Reason: {score['reason']}\n")
     flew = scenario.plant.chosen.flies
     if flew or score["airspeed"]["samples"]:
         phases = ("stroke", "transition", "cruise") if flew else ()
-        _print(console, _airspeed_table(score["airspeed"], phases), "", _pressure_table(score["pressure"]), "")
+        _print(console, _airspeed_table(score["airspeed"], phases), _integrity_line(score["airspeed"]), "")
+        _print(console, _pressure_table(score["pressure"]), "")
     if score["requirements"]:
         _print(console, _requirements_table(score["requirements"]), "")
     for note in notes(flight):
@@ -156,13 +157,35 @@ def _airspeed_table(airspeed: dict[str, Any], phases: tuple[str, ...]) -> Table:
         ("reduction, %", "reduction_percent", 1),
         ("bias, m/s", "bias", 3),
         ("largest error, m/s", "max_error", 3),
+        ("RMSE of calibrated, m/s", "calibrated.rmse", 3),
+        ("RMSE of equivalent, m/s", "equivalent.rmse", 3),
         ("mean e²/sd² (NEES)", "nees_mean", 2),
         ("share within ±1.96 sd", "coverage_95", 3),
         ("share valid", "valid_fraction", 3),
         ("samples", "samples", 0),
     ):
-        table.add_row(label, *(_number(column[key], digits) for column in columns.values()))
+        table.add_row(label, *(_number(_at(column, key), digits) for column in columns.values()))
     return table
+
+
+def _integrity_line(airspeed: dict[str, Any]) -> str:
+    """Say how long a valid airspeed misled, how often validity was lost, and how often a channel was flagged."""
+    longest, losses = airspeed.get("hazard_time"), airspeed.get("losses")
+    if longest is None or losses is None:
+        return ""
+    verdict = "a hazard" if airspeed["hazard"] else "no hazard"
+    return (
+        f"Longest spell of a valid airspeed more than 3 m/s off: {longest:.2f} s, {verdict}\n"
+        f"Losses of validity: {losses}; flags of a channel: {airspeed['flags']}, false {airspeed['false_flags']}"
+    )
+
+
+def _at(figures: dict[str, Any], key: str) -> Any:
+    """Return a figure by its key, joined by dots; None of a score that lacks it, as one of an earlier version does."""
+    found: Any = figures
+    for name in key.split("."):
+        found = found.get(name) if isinstance(found, dict) else None
+    return found
 
 
 def _pressure_table(pressure: dict[str, Any]) -> Table:

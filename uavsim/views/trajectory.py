@@ -41,7 +41,7 @@ SHAPES = {"detected": "x", "rail exit": "s", "wing out": "D", "motor on": "o"}
 
 def draw(record: Record) -> "Figure | None":
     """Way through the air, attitude, throttle and wing."""
-    if not record.has("truth") or not _flew(record):
+    if not record.has("truth") or not flew(record):
         return None
     stretches = record.with_enlarged(record.opening)
     if record.span[1] - stretches[-1][1] < LEAST_SAVED:
@@ -61,9 +61,10 @@ def draw(record: Record) -> "Figure | None":
     return figure
 
 
-def _flew(record: Record) -> bool:
-    """Whether there is a way to draw; a flight can diverge before its first row, and a rig has none."""
-    if not record.scenario.plant.chosen.flies:
+def flew(record: Record) -> bool:
+    """Whether there is a way to draw; a flight can diverge before its first row, and few rigs have one."""
+    kind = record.scenario.plant.chosen
+    if not (kind.flies or kind.air):
         return False
     return bool(np.isfinite(record.flight.truth["altitude"].to_numpy()).sum() > 1)
 
@@ -99,11 +100,10 @@ def _path(axes: "Axes", record: Record, stretch: Stretch) -> None:
     heading = np.radians(record.scenario.launcher.heading_deg)
     distance = north * np.cos(heading) + east * np.sin(heading)
     height = altitude - record.scenario.environment.ground_elevation
-    rail = ("rail", t[0], record.phases[0][1] if record.phases else t[-1])
-    for name, first, last in (rail, *record.phases):
+    for name, first, last in parts(record, t):
         x, y = (a[:: max(1, a.size // COLUMNS)] for a in list(within((first, last), t, distance, height))[1:])
         axes.plot(x, y, color=PHASES.get(name, GREY), linewidth=2.0, label=name)
-    for mark, shape in _shapes(record):
+    for mark, shape in shapes(record):
         if stretch[0] <= mark.t <= stretch[1]:
             at = [np.interp(mark.t, t, a) for a in (distance, height)]
             axes.plot(*at, shape, color=mark.colour, fillstyle="none", markersize=7, label=mark.label, zorder=3)
@@ -113,7 +113,14 @@ def _path(axes: "Axes", record: Record, stretch: Stretch) -> None:
     label(axes, x="distance, m")
 
 
-def _shapes(record: Record) -> Iterator[tuple[Mark, str]]:
+def parts(record: Record, t: Array) -> list[tuple[str, float, float]]:
+    """Return the parts of the way that are drawn each in its colour: rail and phases; one of a rig."""
+    name = "rail" if record.scenario.plant.chosen.flies else "course"
+    return [(name, float(t[0]), record.phases[0][1] if record.phases else float(t[-1])), *record.phases]
+
+
+def shapes(record: Record) -> Iterator[tuple[Mark, str]]:
+    """Yield what happened on the way, and how it is drawn."""
     yield from ((mark, SHAPES[mark.label]) for mark in record.marks if mark.label in SHAPES)
     outcome = record.scored("outcome")
     if outcome in {"crashed", "landed", "missed_launch", "diverged"}:

@@ -101,6 +101,14 @@ def test_exposures_are_those_of_the_score() -> None:
     assert counted(crashes, frame)[1] * 3600.0 == pytest.approx([36.0, 0.0, 36.0])
 
 
+def test_a_flight_without_a_count_never_helps_a_rate() -> None:
+    """Null counts as one event where there is exposure, and as nothing where there is none."""
+    hazards = Requirement("airspeed.hazard", "rate_per_hour", maximum=1.0, exposure="flight")
+    frame = flights(4).assign(**{"airspeed.hazard": [1.0, np.nan, np.nan, 0.0]})
+    frame.loc[2, "launch.true_time"] = np.nan
+    assert counted(hazards, frame)[0].tolist() == [1.0, 1.0, 0.0, 0.0]
+
+
 def test_a_rate_is_met_after_the_exposure_of_its_first_look() -> None:
     """No event in t hours shows a rate below -ln(0.04)/t: 3.219 events expected."""
     need = int(np.ceil(-np.log(0.04) / 10.0 * 1000.0))

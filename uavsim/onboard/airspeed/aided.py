@@ -425,7 +425,17 @@ class AidedFilter(Estimator):
         test, energy, density = self._first_climb, self.energy, self._air.density
         if self.ports.total.faulty or self.ports.static.faulty:
             test.open, test.hidden = False, 0.0
-        elif test.add(reading, self._t - before, energy.v, self._u, density, self._push_end.lasts):
+        elif test.add(
+            reading,
+            self._t - before,
+            energy.v,
+            self._u,
+            density,
+            self._push_end.lasts,
+            ground=self._speed_since_launch(),
+            position=self._position,
+            position_sd=2.0 * self._position_share,
+        ):
             self.ports.never_moved(self._t, energy, test.rest, test.lost, density)
 
     def _not_risen(self, kind: str) -> None:
@@ -679,7 +689,8 @@ class AidedFilter(Estimator):
         tared = p_total - self._tare - self._difference.zero - self._noise.acceleration * pushed
         unknown = 0.0
         if self._wrong:
-            self._angles.lift = self._lift
+            if self._lift == self._lift:
+                self._angles.lift = self._lift
             above, off, unknown = self._off()
             tared, p_static = tared - above + (off if self._differential else 0.0), p_static - off
         nis_static, nis_total = energy.fly(
@@ -709,8 +720,12 @@ class AidedFilter(Estimator):
         if size != 0.0:
             energy.widen_bias(size * size)
             ports.total.open_bias(self.time, size * size)
-        elif to > shock.due and shock.offset(energy.b, energy.bb):
-            ports.tell(self._t, "airspeed_fault", "accelerometer", "offset")
+        elif to > shock.due:
+            kind = shock.judge(energy.b, energy.bb)
+            if kind == "offset":
+                ports.tell(self._t, "airspeed_fault", "accelerometer", kind)
+            elif kind == "felt":
+                ports.total.close_bias()
 
     def _advance(self, to: float) -> None:
         """Predict to a later time; an earlier one leaves the filter where it is."""
@@ -722,6 +737,9 @@ class AidedFilter(Estimator):
             self.ports.total.carry(self.energy, dt, gained, variance, self._air.density)
         else:
             self.energy.predict(dt, gained, variance, self._air.density, self._force > self._on_rail)
+            if self._wind.on:  # the model climbs by the airspeed, the aircraft up its rail by that over the ground
+                energy = self.energy
+                energy.shift_static(self._air.density * energy.s * (energy.v - self._wind.gained(energy.v)) * dt)
 
     def _go(self, to: float, dt: float) -> tuple[float, float]:
         """Go on to a later time; return ∫ f_x dt, m/s, and the variance that gust and accelerometer add to V's."""
@@ -750,11 +768,9 @@ class AidedFilter(Estimator):
                 self.ports.torn = True
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, to)
-        lift = self._gained.lift()
-        if lift == lift:
-            self._lift = lift
-        if self.time > self._steady_from:
-            turned, doubt = pulled(self._lift, v)
+        lift = self._lift = self._gained.lift()
+        if self.time > self._steady_from and lift == lift:
+            turned, doubt = pulled(lift, v)
             gained -= turned * dt
             variance += doubt * dt
         self.time, self._u, self._w = to, u, w
@@ -767,10 +783,11 @@ class AidedFilter(Estimator):
             return nan
         noise = self._static_variance
         if self._wrong:
-            _, off, unknown = self._off()
-            noise += unknown
-            if not self._wind.on:
-                reading -= off
+            if self._wind.on:
+                noise += self._wind.unknown(energy.v, energy.p, self._air.heat)
+            else:
+                _, off, unknown = self._off()
+                reading, noise = reading - off, noise + unknown
         if ports.static.faulty:
             ports.hear_static(self._t, energy, at, reading, reading - energy.p - density * energy.v * ahead * energy.s)
             return nan
@@ -809,6 +826,15 @@ class AidedFilter(Estimator):
             return difference + self._difference.static, self._total_variance + self._static_variance, 0.0
         return difference, self._total_variance, self.energy.p
 
+    def _measure(self, tared: float, variance: float, pushed: float, relative: bool) -> float:
+        """Correct the filter by a total pressure, Pa, of a variance, Pa²; on the rail it has the side wind in it."""
+        energy, heat = self.energy, self._air.heat
+        if not self._wind.on:
+            return energy.total(tared, variance, pushed, heat)
+        if self._wrong:
+            variance += self._wind.unknown(energy.v, energy.p, heat)
+        return self._wind.total(energy, tared, variance, pushed, heat, relative=relative)
+
     def _take_total(self, reading: float, end: float) -> float:
         energy, air = self.energy, self._air
         behind = self.time - (end - self._total_age)
@@ -834,10 +860,7 @@ class AidedFilter(Estimator):
             self.ports.hear_total(self._t, energy, end, read, tared + base, variance)
             return nan
         on_rail = self._wind.on
-        if on_rail:
-            nis = self._wind.total(energy, tared, variance, pushed, air.heat, relative=base > 0.0)
-        else:
-            nis = energy.total(tared, variance, pushed, air.heat)
+        nis = self._measure(tared, variance, pushed, base > 0.0)
         if energy.taken:
             self._fresh = self._t
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
@@ -905,6 +928,8 @@ class AidedFilter(Estimator):
         share = self._temperature_share * speed / air.temperature
         if self._wrong:
             position = self._position_share * speed
+            if self._wind.on and speed > SLOWEST:
+                position = sqrt(self._wind.unknown(energy.v, static, air.heat)) / (air.density * speed)
             share = sqrt(share * share + position * position)
         if self._warmed_share > 0.0:
             warmed = self._warmed_share * speed * speed / air.heat * speed

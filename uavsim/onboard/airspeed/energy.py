@@ -203,6 +203,10 @@ class EnergyFilter(EnergyModel):
         """Move the airspeed, m/s, which is known as well as before."""
         self.v += change
 
+    def shift_static(self, change: float) -> None:
+        """Move the static pressure, Pa, which is known as well as before."""
+        self.p += change
+
     def widen_speed(self, variance: float) -> None:
         """Know the airspeed less well, by a variance of that, m²/s²."""
         self.vv += variance

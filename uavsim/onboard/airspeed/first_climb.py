@@ -1,10 +1,15 @@
 """Whether the static port lives: it has to leave the pressure of the rail when the aircraft climbs for the first time.
 
 A static port that was shut before the launch reads that pressure for ever. It hides Δp = ρ g h, and the airspeed is too
-low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what the force says. So two things tell:
+low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what the force says. So three things tell:
 
 * **Life.** Any change of the mean static pressure by more than `MOVED`, of climb or of the port's own error, shows that
   it is open. On a rail of 12° that is so 0.1 m behind its end.
+* **Odds.** On the rail the height is s sin θ, with s the way by the force. So an open port reads p₀ + e q − ρ g s sin θ
+  with its known position error e, a shut one p₀. Each reading r of the noise σ says
+
+      ln (P_shut/P_open) += ½ (r − p_open)²/S − ½ (r − p₀)²/σ² + ½ ln(S/σ²),    S = σ² + what is not known of p_open
+
 * **Loss.** Energy rate is V V̇ = V f_x + ṗ/ρ. With V̂ the airspeed of the pressures since the push,
 
       D = V̂ − V̂₀ − ∫ (f_x − b) dt = −2 g h/V    if the port is shut, and −g h/V with the h that is seen, if it lives
@@ -13,10 +18,10 @@ low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what
   port that begins to leak, an offset of f_x that arises in the push) it is the one that has never shown life.
 
 Until it has shown life, what it may hide is in the bar: ρ g h with the h that the rail's elevation gives, as far as
-`HIGHEST`, and what D says.
+`HIGHEST`, or what D says, times √P_shut: the standard deviation of an error that is there with the probability P_shut.
 """
 
-from math import inf, sin
+from math import exp, inf, log, sin, sqrt
 
 from uavsim.onboard.airspeed.gust import GRAVITY
 
@@ -28,7 +33,13 @@ LIVES = 0.1  # s, for which it must have. By hand: no single spike
 # m/s: 5 m of height at 25 m/s. Unfolding and an unknown b make 0.6 in the second that it takes. By hand
 LOST = -3.0
 HIGHEST = 10.0  # m of height, by which it is decided, or the flight is a level one, which tells nothing
-PART = 1.0  # of the height that the rail points to: a standard deviation. By hand
+# nats: one port in a thousand is shut before a launch, by hand: a crew looks. Between the bounds a wrong turn can be
+# taken back within some readings
+PRIOR, LEAST_ODDS, MOST_ODDS = -7.0, -16.0, 5.0
+SAID = 3.0  # nats that one reading may say at the most: no spike decides. By hand
+# share of the height on the rail that is not known: elevation and way. By hand. Off the rail the path bends by what
+# nobody on board knows, and all of the height that the rail points to beyond its end is unknown
+UNSURE = 0.15
 
 
 class FirstClimb:
@@ -46,22 +57,37 @@ class FirstClimb:
         The rail's pressure, Pa.
     """
 
-    __slots__ = ("_height", "_mean", "_moved_for", "_need", "_reference", "_slope", "hidden", "lost", "open", "rest")
+    __slots__ = (
+        "_beyond", "_height", "_mean", "_moved_for", "_need", "_odds", "_reference", "_slope", "_variance", "hidden",
+        "lost", "open", "rest",
+    )  # fmt: skip
 
     def __init__(self) -> None:
         self.open = False
         self.hidden = self.lost = self.rest = self._mean = self._height = self._moved_for = self._slope = 0.0
-        self._need, self._reference = inf, 0.0
+        self._need, self._reference, self._beyond, self._odds, self._variance = inf, 0.0, 0.0, PRIOR, 1.0
 
     def begin(self, rest: float, sd: float, elevation: float) -> None:
         """Begin on the rail: its pressure, Pa, the noise of a reading, Pa, and its elevation, rad."""
         self.open = True
         self.rest = self._mean = rest
         self.hidden = self.lost = self._height = self._moved_for = 0.0
-        self._need, self._slope = max(MOVED, MOVED_SD * sd), PART * sin(elevation) if elevation > 0.0 else 0.0
-        self._reference = inf
+        self._need, self._slope = max(MOVED, MOVED_SD * sd), sin(elevation) if elevation > 0.0 else 0.0
+        self._reference, self._beyond, self._odds, self._variance = inf, 0.0, PRIOR, sd * sd
 
-    def add(self, reading: float, dt: float, speed: float, gained: float, density: float, pushed: bool) -> bool:
+    def add(
+        self,
+        reading: float,
+        dt: float,
+        speed: float,
+        gained: float,
+        density: float,
+        pushed: bool,
+        *,
+        ground: float,
+        position: float,
+        position_sd: float,
+    ) -> bool:
         """Take a static pressure; return whether the port is shut.
 
         Parameters
@@ -76,6 +102,10 @@ class FirstClimb:
             kg/m³.
         pushed : bool
             Whether the push lasts.
+        ground : float
+            Speed over the ground by the force, m/s.
+        position, position_sd : float
+            The port's known position error and the standard deviation of the rest, shares of q.
         """
         self._mean += (reading - self._mean) * (dt / MEAN if dt < MEAN else 1.0)
         if not -self._need < self._mean - self.rest < self._need:
@@ -84,15 +114,30 @@ class FirstClimb:
                 self.open, self.hidden = False, 0.0
             return False
         self._moved_for = 0.0
-        if self._height < HIGHEST and speed > 0.0:
-            self._height += self._slope * speed * dt
+        if self._height < HIGHEST and ground > 0.0:
+            risen = self._slope * ground * dt
+            self._height += risen
+            self._beyond += 0.0 if pushed else risen
         if pushed or self._reference == inf:
             self._reference = speed - gained
         self.lost = lost = speed - gained - self._reference
-        self.hidden = density * GRAVITY * self._height
+        impact = 0.5 * density * speed * speed
+        self._weigh(reading, density * GRAVITY, position * impact, position_sd * impact)
+        hidden = density * GRAVITY * self._height
         if lost < 0.0:
-            self.hidden = max(self.hidden, -0.5 * density * speed * lost)
+            hidden = max(hidden, -0.5 * density * speed * lost)
+        self.hidden = hidden / sqrt(1.0 + exp(-self._odds))
         if lost < LOST:
             self.open, self.hidden = False, 0.0
             return True
         return False
+
+    def _weigh(self, reading: float, weight: float, error: float, error_sd: float) -> None:
+        """Weigh a shut port against an open one by a reading, Pa, in air of ρ g, Pa/m; both of the errors in Pa."""
+        shut = reading - self.rest
+        on_rail = self._height - self._beyond
+        spread = self._variance + (UNSURE * weight * on_rail) ** 2 + (weight * self._beyond) ** 2 + error_sd * error_sd
+        risen = shut - error + weight * on_rail
+        said = 0.5 * (risen * risen / spread - shut * shut / self._variance + log(spread / self._variance))
+        odds = self._odds + (SAID if said > SAID else -SAID if said < -SAID else said)
+        self._odds = LEAST_ODDS if odds < LEAST_ODDS else MOST_ODDS if odds > MOST_ODDS else odds

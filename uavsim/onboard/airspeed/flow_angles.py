@@ -7,11 +7,11 @@
 a and α₀ are the aircraft's, of a lift curve that is straight. Folded wings lift little, and α is small and not known.
 
 **Sideslip.** The rail is left with that of the side wind, β₀. The aircraft then swings into the wind: y = sin β
-is counted as a normal number of mean 0 and of the variance y₀² e^(−2 t/τ) + y_g², so y² has that for its mean and √2
-times it for its standard deviation; y_g is what turbulence makes, σ/V.
+is counted as a normal number of mean 0 and of the variance y_g², y_g being what turbulence makes, σ/V. So y² has that
+for its mean and √2 times it for its standard deviation. To it comes y₀² e^(−2 t/τ), of which two thirds are unsure.
 """
 
-from math import exp
+from math import exp, hypot
 
 from uavsim.onboard.airspeed.settings import AidedSettings
 
@@ -23,6 +23,7 @@ FOLDED = 0.0, 0.05  # rad, α and its standard deviation with the wings folded a
 LIFTED_SD = 0.01  # rad, of α by lift: pitch rate, wings that twist. fw8 is within 0.011 at any time. By hand
 STEADY_SD = 0.01  # rad, of β beside turbulence: an aircraft that is not trimmed to the last
 LEAST_SPEED = 10.0  # m/s, below which no wing flies
+SWUNG = 0.67  # share of the swing's square that is not known: it is anywhere between 0 and twice its mean. By hand
 SQUARE = 1.41  # standard deviation of the square of a normal number of mean 0, over its variance
 STEEPEST = 0.35  # rad, beyond which no wing lifts as the curve says
 
@@ -60,13 +61,14 @@ class FlowAngles:
         """Return the mean of y² and its standard deviation at `t`, s, and an airspeed, m/s."""
         y = self._gust / v if v > LEAST_SPEED else self._gust / LEAST_SPEED
         mean = y * y + STEADY_SD * STEADY_SD
+        swing = 0.0
         if self._side2 > 0.0:
             since = (t - self._left) / SWING
             if since < OVER:
-                mean += self._side2 * exp(-2.0 * since) if since > 0.0 else self._side2
+                swing = self._side2 * exp(-2.0 * since) if since > 0.0 else self._side2
             else:
                 self._side2 = 0.0
-        return mean, SQUARE * mean
+        return mean + swing, hypot(SQUARE * mean, SWUNG * swing)
 
     def down(self, v: float, density: float) -> tuple[float, float]:
         """Return z, the sine of α, and its standard deviation at an airspeed, m/s, in air of a density, kg/m³."""

@@ -4,7 +4,8 @@
     invalid  nothing but NaN for so long
     range    nothing but readings at or beyond the ends of the range
     stuck    the same number for longer than its noise allows (`uavsim.onboard.repeats`)
-    offset   under the cover the pair differs by more than `FAR` standard deviations of what its descriptions allow
+    offset   in the tare the pair differs by more than `FAR` standard deviations of what the parts allow, and than a
+             storm makes where it is open
 
 What a sensor has read itself is never taken for normal. That a port is shut or covered no pressure at rest can tell: a
 live one does not move either. That is for the stroke (`stroke`).
@@ -23,6 +24,7 @@ SILENT = 0.5
 PERIODS = 10.0  # the same of a slow head, periods
 SETTLED = 1.0  # s of readings before anything is said. By hand
 FAR = 4.0  # standard deviations: one healthy pair in 16 000
+STORM = 800.0  # Pa: ½ρw² of 36 m/s, which an open head may see at rest
 LEAST_OFFSET = 30.0  # Pa, below which no difference is told: 7 m/s at rest, which the tare takes off. By hand
 
 WORDS = {
@@ -168,7 +170,7 @@ class RailCheck:
         broken = self.broken(t)
         reasons = [f"{_named(name)}: {WORDS[wrong]}" for name, wrong in broken.items()]
         if not broken and (off := self._apart()):
-            reasons.append(f"both ports: under the cover they differ by {off:.0f} Pa, beyond what the parts allow")
+            reasons.append(f"both ports: at rest they differ by {off:.0f} Pa, beyond what the parts allow")
         return tuple(reasons)
 
     def _apart(self) -> float:
@@ -178,7 +180,8 @@ class RailCheck:
             return 0.0
         mean = self._sum / n
         sd = hypot(noise.difference_sd, hypot(noise.total_sd, 0.0 if noise.differential else noise.static_sd) / sqrt(n))
-        return mean if abs(mean) > max(FAR * sd, LEAST_OFFSET) else 0.0
+        most = max(FAR * sd, LEAST_OFFSET)
+        return mean if mean < -most or mean > most + (0.0 if noise.covered else STORM) else 0.0
 
 
 def _named(channel: str) -> str:

@@ -121,6 +121,9 @@ class RailWind:
             and the covariance of u₀ with what is left, Pa·m/s.
         """
         static, heat, gusts = air
+        self.on = False
+        if seen is not None:
+            seen = seen[0], seen[1] + self.unknown(self._mean[0], static, heat)
         (u, c), one = self._mean, self._sd * self._sd
         uu, cc, uc = one, one, 0.0
         off = variance = ud = cd = 0.0
@@ -136,6 +139,16 @@ class RailWind:
         self._start, self._height = u, self._at
         self._beside = Beside(c, cc, of_v=uc, of_d=cd)
         return u, sqrt(uu), off, variance, ud
+
+    def unknown(self, u: float, static: float, heat: float) -> float:
+        """Return the variance of what is not known of the static port's error on the rail, Pa²."""
+        c = self._beside.value if self.on else self._mean[1]
+        v2 = u * u + c * c
+        if v2 < SMALL:
+            return 0.0
+        impact = isentropic(sqrt(v2), static, heat) - static
+        side2, down2 = c * c * self._side * self._side / v2, c * c * self._down * self._down / v2
+        return (impact * self._head.spread(side2, 0.0, sqrt(down2), 0.0)) ** 2
 
     def _corrected(
         self, seen: tuple[float, float], static: float, heat: float

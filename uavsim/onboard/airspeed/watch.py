@@ -51,6 +51,8 @@ GAP = 0.1  # s without a pressure, after which a test begins anew: ten readings 
 # s. It is averaged over the last 10 s, and only while no more than a usual gust is between V and the force, for a leak
 # must not be learnt. In the first 5 s it is learnt in any case. By hand; docs/faults.md, the leaks, holds the check
 SLOW, LEARNT = 10.0, 5.0
+DOUBTED = 6.0  # nats of `smooth`: a port that wanders from the force and shows the gusts does not leak. By hand
+REOPENED = 2.0  # s after a step of f_x, in which the healthy model knows too little of b to tell a leak. By hand
 RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
 TURNS = (
     2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
@@ -119,9 +121,9 @@ class TotalWatch:
     """
 
     __slots__ = (
-        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped", "_jumped_at",
-        "_last", "_lost", "_near", "_p", "_pull", "_rough", "_silent", "_smooth", "_sound", "_still", "_t",
-        "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
+        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
+        "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough", "_silent",
+        "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -138,7 +140,8 @@ class TotalWatch:
         self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
-        self._jumped, self._jumped_at = 0.0, -inf
+        self._jumped, self._jumped_at, self._opened = 0.0, -inf, -inf
+        self._opened_by = aided.bias_sd**2, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
         if row_variance is not None:
@@ -201,12 +204,13 @@ class TotalWatch:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
         if self._declared:
-            smooth = self._smooth.add(reading, dt, test.nis, test.spread, self._pull.size < TURNS)
+            smooth = self._smooth.add(reading, dt, test.nis, test.spread, self._pull.size < TURNS and t > self._opened)
             if smooth == 0.0:
                 self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
             elif smooth > LEVEL:
                 return "leak"
-        if self._wanders(v, change - energy.s * dt, test.lost, dt):
+        wanders = self._wanders(v, change - energy.s * dt, test.lost, dt)
+        if wanders and not (self._declared and self._smooth.evidence < DOUBTED):
             return "leak"
         return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
@@ -230,10 +234,17 @@ class TotalWatch:
 
     def open_bias(self, t: float, variance: float) -> None:
         """Be told at `t`, s, that b may have moved by that variance, (m/s²)²."""
+        self._opened_by = self._bias_variance(t), t
         self.jump(t, variance)
         self.port.frozen.open_bias(variance)
         self._taught = min(self._taught, RELEARNT)
         self._wandering.forget()
+        self._opened = t + REOPENED
+
+    def close_bias(self) -> None:
+        """Be told that b has not moved at the last step."""
+        variance, at = self._opened_by
+        self._jumped, self._jumped_at = variance - self._bias_sd**2, at
 
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""

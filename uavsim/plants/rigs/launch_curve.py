@@ -115,4 +115,5 @@ def launch_curve(settings: LaunchCurveSettings, run: Run) -> PrescribedPlant:
     return PrescribedPlant(run, columns, noise * (settings.noise_sd_g * STANDARD_GRAVITY))
 
 
-KINDS.add(Kind("launch-curve", launch_curve, group="launch_curve", ours=True))
+READ = ("peak_specific_force_g", "force_factor", "force_spread", "elevation_deg", "heading_deg")  # of the launcher
+KINDS.add(Kind("launch-curve", launch_curve, group="launch_curve", launcher=READ, ours=True))

@@ -282,7 +282,8 @@ def counted(requirement: Requirement, flights: "pd.DataFrame") -> tuple[Floats, 
     )
     seconds = np.fmin(release, duration) if requirement.exposure == "armed" else duration - true
     hours: Floats = np.maximum(np.nan_to_num(seconds), 0.0) / HOUR
-    return counts, hours
+    unknown = np.isnan(counts)  # a flight without a value never helps; one without exposure says nothing either way
+    return np.where(unknown, np.where(hours > 0.0, 1.0, 0.0), counts), hours
 
 
 def _finite(value: float | np.floating[Any]) -> float | None:

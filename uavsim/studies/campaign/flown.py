@@ -17,6 +17,7 @@ from uavsim.flight import Flight
 from uavsim.onboard.airspeed.kinds import is_aided
 from uavsim.scenario import Scenario
 from uavsim.score import HIDDEN
+from uavsim.score_keys import NUMBERS
 from uavsim.studies.airspeed_flights import Course, course
 from uavsim.studies.campaign.keep import Keep
 from uavsim.studies.campaign.plan import Plan
@@ -133,6 +134,8 @@ def _plain(name: str, value: Any) -> Any:
     """Whole numbers only where a column never lacks one: a column has one type in all parts of a table."""
     if value is None:
         return math.nan
+    if isinstance(value, bool) and name in NUMBERS:
+        return float(value)  # it may be null in another flight
     return float(value) if isinstance(value, int) and not isinstance(value, bool) and name not in WHOLE else value
 
 

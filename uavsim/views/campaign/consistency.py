@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from uavsim.consistency import mean_band
+from uavsim.set_faults import set_faults
 from uavsim.studies.batch_cramer_rao import ENOUGH, FEWEST, Least
 from uavsim.studies.campaign.envelopes import mean_square_band
 from uavsim.studies.campaign.far import far_traces
@@ -13,7 +14,6 @@ from uavsim.studies.campaign.many import Many, Mask
 from uavsim.views.campaign.errors import ENLARGED, far_words, log_axis, rebinned, together
 from uavsim.views.campaign.quantities import Array
 from uavsim.views.campaign.words import remark, title
-from uavsim.views.faults import set_faults
 from uavsim.views.figure import BLUE, GREY, RED, SMALL, label, legend, make_room, sheet
 
 if TYPE_CHECKING:

@@ -52,6 +52,7 @@ def summary(flown: Batch | Many, folder: Path | None = None) -> dict[str, Any]:
             {name: value for name, value in asdict(cause).items() if name != "row"} for cause in causes(told)[:LISTED]
         ],
         "false_detections": int(np.nansum(told.column("launch.false_detections"))),
+        "integrity": _integrity(told),
         "requirements_unmet": int((~told.met).sum()),
         "quantiles": {
             quantity.key: found for quantity in SHOWN if (found := _quantiles(told, quantity.key)) is not None
@@ -73,6 +74,16 @@ def curves(flown: Batch | Many) -> dict[str, Any]:
         "airspeed_error": _errors(told),
         "convergence": {name: _running(one) for name, one in estimates(told, POINTS).items()} if len(told) else {},
     }
+
+
+def _integrity(flown: Many) -> dict[str, Any]:
+    """Return how many flights had a hazard (a valid airspeed 3 m/s off for 1 s), a false flag, a loss of validity."""
+    found = {}
+    for name, key in (("hazard", "hazard"), ("false_flag", "false_flags"), ("loss", "losses")):
+        values = flown.column(f"airspeed.{key}")
+        values = values[~np.isnan(values)]
+        found[name] = _share(int((values > 0.0).sum()), values.size)
+    return found
 
 
 def _share(count: int, flights: int) -> dict[str, Any]:

@@ -49,6 +49,7 @@ def print_many(flown: Batch | Many, folder: Path | None = None) -> None:
         console,
         f"False detections before release: {found['false_detections']}",
         f"Flights with a requirement that is not met: {found['requirements_unmet']}",
+        *_integrity_lines(found["integrity"]),
     )
     if found["draws"]:
         _print(console, "", _draws_table(found["draws"][:DRAWS]))
@@ -110,6 +111,16 @@ def with_band(quantile: dict[str, float | None], factor: float, digits: int) -> 
     )
     band = f"{low}…{high}" if low and high else f"≥ {low}" if low else f"≤ {high}" if high else "–"
     return words(f"{value}\n", (band, "dim"))
+
+
+def _integrity_lines(found: dict[str, Any]) -> list[str]:
+    """Say in how many flights a valid airspeed misled, a channel was flagged falsely, and validity was lost."""
+    names = {"hazard": "a valid airspeed 3 m/s off for 1 s", "false_flag": "a false flag", "loss": "a loss of validity"}
+    return [
+        f"Flights with {said}: {one['flights']} (at most {100.0 * one['high']:.2f} %)"
+        for name, said in names.items()
+        if (one := found[name])["high"] is not None
+    ]
 
 
 def _bound_lines(flown: Many, found: dict[str, Any]) -> list[str]:

@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim import dispersions
+from uavsim.criteria import MISSED_AFTER
 from uavsim.scenario import Scenario
-from uavsim.score import MISSED_AFTER
 from uavsim.score_keys import NUMBERS
 from uavsim.studies.campaign.flown import fly_position
 from uavsim.studies.campaign.keep import Keep

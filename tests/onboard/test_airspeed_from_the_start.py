@@ -1,0 +1,225 @@
+"""Sensors that are broken before the launch: the rail, the stroke, the first climb, and what is told then."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from references.manoeuvres import LAUNCH, NOISE, Flight, believed, fly, run, spoil
+
+from uavsim.onboard.airspeed import AidedFilter, first_climb
+from uavsim.onboard.airspeed.rail import RailCheck
+from uavsim.onboard.rail_offset import RailOffset
+from uavsim.onboard.readiness import Readiness
+
+FLIGHT = Flight(duration=12.0)
+DEAD = [
+    ("total", 1, "stuck", "stuck", 0.0),
+    ("total", 1, "silent", "silent", 0.0),
+    ("total", 1, "nan", "invalid", 0.0),
+    ("total", 1, "value", "range", 0.0),
+    ("static", 2, "stuck", "stuck", 0.0),
+    ("static", 2, "nan", "invalid", 0.0),
+    ("static", 2, "silent", "silent", 0.0),
+    ("thermometer", 3, "nan", "invalid", 0.0),
+    ("thermometer", 3, "value", "range", 500.0),
+]
+
+
+@pytest.mark.parametrize(("channel", "column", "how", "kind", "size"), DEAD)
+def test_a_dead_sensor_is_named_at_the_launch_and_never_taken_back(channel, column, how, kind, size):
+    readings = spoil(fly(FLIGHT, 9600), column, 0.5, how, size=size)
+    flown = run(readings)
+    assert [(event, name, word) for _, event, name, word in flown.news] == [("airspeed_fault", channel, kind)]
+    assert flown.news[0][0] < LAUNCH + 0.3
+    assert not flown.after(0.0)[:, 3].any() or channel == "thermometer"
+
+
+@pytest.mark.parametrize(("channel", "column", "how", "kind", "size"), DEAD)
+def test_the_rail_says_what_is_wrong(channel, column, how, kind, size):
+    """With a reason that names it; a healthy head has none."""
+    for spoilt in (True, False):
+        readings = fly(replace(FLIGHT, duration=0.5), 9601)
+        readings = spoil(readings, column, 0.5, how, size=size) if spoilt else readings
+        check = RailCheck(NOISE, 4.0)
+        for row in readings.air[readings.air[:, 0] < LAUNCH - 0.1].tolist():
+            check.add(*row)
+        assert check.decided(row[0])
+        doubts = check.doubts(row[0])
+        assert [reason.startswith(channel) for reason in doubts] == ([True] if spoilt else [])
+        assert check.broken(row[0]) == ({channel: kind} if spoilt else {})
+
+
+def test_quiet_and_coarse_parts_are_alive():
+    """Noise of a fifth of a step, and of 0.3 of what is usual: ready."""
+    for sd, step in ((2.0, 10.0), (0.3, 0.01), (1.1, 2.64)):
+        flight = replace(FLIGHT, duration=0.5, total_sd=sd, static_sd=sd, total_step=step, static_step=step)
+        readings = fly(flight, 9602)
+        believed_sd = float(np.hypot(sd, step / 12.0**0.5))
+        noise = replace(NOISE, total_sd=believed_sd, static_sd=believed_sd, total_step=step, static_step=step)
+        check = RailCheck(noise, 4.0)
+        for row in readings.air[readings.air[:, 0] < LAUNCH - 0.1].tolist():
+            check.add(*row)
+        assert check.doubts(row[0]) == ()
+
+
+def test_a_pair_that_differs_by_more_than_its_parts_allow_is_told():
+    readings = spoil(fly(replace(FLIGHT, duration=0.5), 9603), 1, 0.0, "offset", size=500.0)
+    for allowed, told in ((50.0, True), (200.0, False)):
+        check = RailCheck(replace(NOISE, difference_sd=allowed), 4.0)
+        for row in readings.air[readings.air[:, 0] < LAUNCH - 0.1].tolist():
+            check.add(*row)
+        assert bool(check.doubts(row[0])) == told
+
+
+@pytest.mark.parametrize("cover", ["blocked", "cover"])
+def test_a_cover_left_on_is_known_in_the_stroke(cover):
+    """Flagged within 0.3 s of the launch, no airspeed valid, never taken back."""
+    for seed in (9700, 9701):
+        readings = fly(FLIGHT, seed)
+        if cover == "blocked":
+            readings = spoil(readings, 1, 0.0, "shut", seed)
+        else:
+            air = readings.air.copy()
+            air[:, 1] = air[:, 2] + 3.7 * np.random.default_rng(seed).standard_normal(len(air))
+            readings = replace(readings, air=air)
+        flown = run(readings)
+        assert [(event, channel) for _, event, channel, _ in flown.news] == [("airspeed_fault", "total")]
+        assert flown.news[0][0] < LAUNCH + 0.3
+        rows = flown.after(0.3)
+        assert not rows[:, 3].any()
+        assert np.mean(np.abs(rows[:, 4]) < 1.96 * rows[:, 2]) > 0.95  # what is told is right all the same
+
+
+def test_swapped_tubes_are_both_named():
+    readings = fly(FLIGHT, 9702)
+    flown = run(replace(readings, air=readings.air[:, [0, 2, 1, 3, 5, 4]]))
+    assert {(channel, kind) for _, _, channel, kind in flown.faults} == {("total", "swapped"), ("static", "swapped")}
+    assert not flown.after(0.3)[:, 3].any()
+
+
+@pytest.mark.parametrize("wind", [-8.0, 8.0])
+def test_a_live_port_rises_in_any_wind(wind):
+    """A head- or tailwind of 8 m/s along the launch, seen on the rail or not (open tare): no flag."""
+    for tare in ((0.0, 4.0), None):
+        flight = replace(FLIGHT, duration=6.0, wind=wind)
+        assert not run(fly(flight, 9703), believed(flight), tare=tare).faults
+
+
+def test_a_static_port_that_was_shut_is_named_in_the_first_climb():
+    """Within 10 m of height, the bar right until then, and not valid after it; a live one shows life in the stroke."""
+    flight = Flight(duration=8.0)
+    for seed in (9800, 9801):
+        readings = spoil(fly(flight, seed), 2, 0.0, "shut", seed)
+        flown = run(readings)
+        assert [(channel, kind) for _, _, channel, kind in flown.faults] == [("static", "frozen")]
+        at = flown.faults[0][0]
+        assert np.interp(at, readings.t, readings.height) < 10.0
+        rows = flown.rows[(flown.rows[:, 0] > LAUNCH + 0.3) & (flown.rows[:, 0] < at)]
+        assert np.mean(np.abs(rows[:, 4]) < 1.96 * rows[:, 2]) > 0.95
+        assert not flown.rows[flown.rows[:, 0] > at + 0.02, 3].any()
+
+
+def test_the_doubt_of_a_live_static_port_costs_no_bar(monkeypatch):
+    """What it might hide, weighed by its odds: the bar of the stroke and the climb is that of a port nobody doubts."""
+    for seed in (9810, 9811):
+        readings, bars = fly(Flight(duration=6.0), seed), []
+        for prior in (first_climb.PRIOR, first_climb.LEAST_ODDS):
+            monkeypatch.setattr(first_climb, "PRIOR", prior)
+            bars.append(run(readings).after(0.1)[:80, 2])
+        assert np.median(bars[0] / bars[1]) < 1.1
+        assert np.max(bars[0] / bars[1]) < 1.5
+
+
+@pytest.mark.parametrize(("how", "kind"), [("silent", "silent"), ("nan", "invalid")])
+def test_silence_in_flight_is_told_within_a_second_and_validity_follows_the_bar(how, kind):
+    flown = run(spoil(fly(Flight(duration=22.0), 9900), 1, LAUNCH + 5.0, how))
+    assert [(channel, word) for _, _, channel, word in flown.faults] == [("total", kind)]
+    assert LAUNCH + 5.0 < flown.faults[0][0] < LAUNCH + 6.0
+    late = flown.after(5.3)
+    assert (late[:, 2] < 2.0).any()
+    assert (late[:, 2] > 2.0).any()
+    assert (late[late[:, 2] > 2.0, 3] == 0.0).all()
+    assert late[late[:, 2] < 1.9, 3].all()
+    assert np.abs(late[late[:, 3] > 0.0, 4]).max() < 3.0
+
+
+def test_silence_ends_when_readings_come():
+    """Two seconds of silence: taken back a second after they come."""
+    readings = fly(Flight(duration=15.0), 9901)
+    silent = spoil(readings, 1, LAUNCH + 5.0, "silent")
+    air = silent.air.copy()
+    late = air[:, 0] > LAUNCH + 7.0
+    air[late] = readings.air[late]
+    flown = run(replace(readings, air=air))
+    assert [event for _, event, channel, _ in flown.news if channel == "total"] == [
+        "airspeed_fault",
+        "airspeed_recovered",
+    ]
+    assert flown.news[-1][0] < LAUNCH + 8.5
+
+
+def test_a_filter_that_has_diverged_leaves_no_wild_reading_valid():
+    """Pressures alone have a gate of their own: 50 kPa more for single readings are never valid."""
+    readings = fly(Flight(duration=8.0), 9902)
+    air = readings.air.copy()
+    wild = (air[:, 0] > LAUNCH + 4.0) & (np.arange(len(air)) % 7 == 0)
+    air[wild, 1] += 50_000.0
+    estimator = AidedFilter(believed(readings.flight), NOISE, (0.0, 4.0))
+    for row in air.tolist():
+        estimate = estimator.step(*row)
+        if row[0] >= LAUNCH + 3.0 and estimator._gated == float("inf"):
+            estimator._fall_back(row[0], "diverged")
+        elif estimate is not None and estimate[6] and row[0] > LAUNCH + 3.0:
+            assert abs(estimate[1] - readings.truth(row[0])) < 2.0
+
+
+# -- the accelerometer, on its rail -----------------------------------------------------------------------------------
+
+
+def _ready(force, rate=500.0, sd=0.05, step=0.01):
+    noise = replace(
+        NOISE,
+        accelerometer_rate=rate,
+        accelerometer_white_sd=sd,
+        accelerometer_step=step,
+        own_offset_sd=0.2,
+        own_side_offset_sd=0.2,
+        own_lift_offset_sd=0.2,
+        rail_elevation=0.2,
+    )
+    rail = RailOffset(noise)
+    readiness, said = Readiness(noise, rail), None
+    for k in range(round(3.0 * rate)):
+        t = k / rate
+        reading = force(k)
+        if reading is not None:
+            rail.add(t, *reading)
+            readiness.add(t, reading[0])
+        if t >= readiness.due:
+            said = readiness.look(t, (), 0.0)
+    return said
+
+
+def _live(offset=0.0):
+    white = np.random.default_rng(5).standard_normal((2000, 3)) * 0.05
+    rest = (9.80665 * np.sin(0.2) + offset, 0.0, -9.80665 * np.cos(0.2))
+    return lambda k: tuple(np.round((rest + white[k]) / 0.01) * 0.01)
+
+
+@pytest.mark.parametrize(
+    ("force", "word"),
+    [
+        (_live(), None),
+        (_live(5.0), None),
+        (_live(20.0), "off what the rail gives"),
+        (lambda k: (0.0, 0.0, 0.0), "repeats"),
+        (lambda k: (float("nan"),) * 3, "no numbers"),
+        (lambda k: _live()(k) if k < 800 else None, "no reading"),
+    ],
+    ids=["alive", "offset", "far off", "dead", "nan", "silent"],
+)
+def test_a_dead_accelerometer_is_not_ready(force, word):
+    said = _ready(force)
+    assert said is not None
+    assert len(said) == (0 if word is None else 1)
+    assert word is None or (word in said[0] and said[0].startswith("accelerometer"))
