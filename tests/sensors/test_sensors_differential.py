@@ -149,12 +149,16 @@ def test_no_number_of_the_air_leaves_no_number_and_raises_nothing():
 
 # -- the head --------------------------------------------------------------------------------------------------------
 
+TOTAL = TotalPortSettings(probe="ideal")
+PORT = StaticPortSettings(error=0.0, error_alpha=0.0, error_alpha2=0.0, error_beta2=0.0, error_mach2=0.0)
 STILL = PressureErrors(drift=0.0, random_walk=0.0)
 QUIET = AirDataSettings(
     kind="differential",
     thermal=ThermalSettings(lag=1e-9),
     differential=DifferentialSettings(noise_scale=0.0, errors=STILL),
     static=PressureSettings(preset="bmp581", mode="x1/x1", noise_scale=0.0, errors=STILL),
+    total_port=TOTAL,
+    static_port=PORT,
 )
 THERMAL = DifferentialSettings(preset="sdp33", noise_scale=0.0, errors=STILL)
 TABLE = [(0.05, 1.00175109), (0.10, 1.00701752), (0.20, 1.02828112), (0.30, 1.06443029)]  # Mach, p_t/p
@@ -247,7 +251,7 @@ def climbing(t):
 
 def test_a_shut_port_holds_its_pressure_before_a_membrane_and_none_before_a_thermal_part():
     """Shut at 0.2 s, 1000 Pa/s: a membrane's difference grows by what the static side falls; the other's is gone."""
-    shut = TotalPortSettings(faults=(PortFault(kind="blocked", start=0.2),))
+    shut = replace(TOTAL, faults=(PortFault(kind="blocked", start=0.2),))
     rows = fly(replace(QUIET, total_port=shut), climbing, 0.5)
     late = rows[rows[:, 4] > 0.25]
     assert late[:, 1] - late[:, 2] == pytest.approx(600.0 + 1000.0 * (late[:, 4] - 0.2), abs=2.0)
@@ -258,7 +262,7 @@ def test_a_shut_port_holds_its_pressure_before_a_membrane_and_none_before_a_ther
 
 def test_a_shut_static_port_is_shut_for_both_sensors():
     """p_t − p_held before a membrane; a thermal part lets the total pressure in to the static sensor."""
-    shut = StaticPortSettings(faults=(PortFault(kind="blocked", start=0.2),))
+    shut = replace(PORT, faults=(PortFault(kind="blocked", start=0.2),))
     late = fly(replace(QUIET, static_port=shut), climbing, 0.5)
     late = late[late[:, 4] > 0.25]
     assert late[:, 2] == pytest.approx(101_125.0, abs=1.0)
@@ -282,6 +286,18 @@ def test_only_its_own_membrane_bends_the_difference():
 
 def test_the_column_in_a_tube_is_in_the_difference():
     """0.3 m straight aft of the total port, 80 m/s²: ρ L f = 29.4 Pa."""
-    tubed = replace(QUIET, total_port=TotalPortSettings(tube=TubeSettings(length=0.3)))
+    tubed = replace(QUIET, total_port=replace(TOTAL, tube=TubeSettings(length=0.3)))
     rows = fly(tubed, steady(600.0), 0.5, force=(80.0, 0.0, 0.0))[20:]
     assert np.mean(rows[:, 1] - rows[:, 2]) == pytest.approx(600.0 + 1.2250 * 0.3 * 80.0 * (101_925 / 101_325), abs=0.6)
+
+
+def test_swapped_tubes_are_swapped_where_nothing_else_makes_the_head_follow_the_plant():
+    """Ports alone are felt at a conversion's middle: without this the swap of both tubes was not there at all."""
+
+    class Known(Around):
+        def flow_at(self, t):
+            return (*self._air(t), 0.0, 0.0, 0.0, 0.0)
+
+    around = Known(steady(600.0))
+    head = AirDataHead(AirDataSettings(swapped_tubes=True), Streams(1), around, unit="ideal")
+    assert head.full

@@ -13,11 +13,12 @@ share of the dynamic pressure, and the thermometer grow as V, and the lag in an 
 | drift | the pair's walk since the tare |
 | warming | temperature coefficient of both offsets, times what the dies change since the tare |
 | thermometer | none: it makes V·σ_T/(2·T) |
-| position | what a calibration leaves of the static port's error at stated angles, a share of q_c; of a differential sensor its scale error, too |
+| position | what a calibration leaves of the static port's error at stated angles, a share of q_c |
 | lag | age of the total pressure in a stated acceleration; difference of both ages in a stated climb |
 | force | air column in the tubes and sensitivity of the membranes, times the same acceleration |
 
 Of a head with a differential sensor the pair is that sensor alone: of the static one only the density's share is left.
+Its scale error is a share of q_c, too, and stands in `position`.
 
 All but the conditions come from the descriptions of the parts (`sensors.knowledge`) and the keys of `[air_data]`.
 """
