@@ -109,3 +109,20 @@ def test_faults_of_the_sensor_that_is_not_there_are_refused() -> None:
         ValueError, match=r"air_data\.total\.faults: a head of air_data\.kind = 'differential' has no such"
     ):
         load_scenario("catapult", overrides=[KIND, "air_data.total.faults=[{kind='stuck'}]"])
+
+
+def test_the_budget_of_a_differential_part_is_of_its_difference_alone() -> None:
+    """At 30 m/s: 1.5 Pa/(ρV) = 0.041 m/s of noise, whatever the barometer has; 3 % of a thermal part make 0.45 m/s."""
+    from uavsim.studies.error_budget import of_scenario
+
+    def terms(*given: str) -> dict[str, float]:
+        found = of_scenario(load_scenario("catapult", overrides=[KIND, *given]), (30.0,))
+        return {name: float(sd[0]) for name, sd in found.terms.items()}
+
+    plain, noisy = terms(), terms("air_data.static.noise_scale=3")
+    assert plain["noise"] == pytest.approx(1.5 / (1.2264 * 30.0), rel=0.01)
+    assert noisy["noise"] == pytest.approx(plain["noise"], rel=0.02)
+    assert {name: noisy[name] for name in ("tare", "drift", "warming")} == pytest.approx(
+        {name: plain[name] for name in ("tare", "drift", "warming")}
+    )
+    assert terms("air_data.differential.preset=sdp33")["position"] == pytest.approx(0.5 * 0.03 * 30.0, rel=0.01)
