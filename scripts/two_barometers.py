@@ -74,8 +74,9 @@ def swept(table: Table, part: str, options: argparse.Namespace) -> pd.DataFrame:
     for one in table.vary:
         words += ["--vary", one]
     print(f"uavsim {shlex.join(words)}", file=sys.stderr)
-    command = [sys.executable, "-m", "uavsim.cli", *words, "--no-plots", "--resume", "--out", str(folder)]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    if not (folder / "runs.parquet").exists():
+        command = [sys.executable, "-m", "uavsim.cli", *words, "--no-plots", "--out", str(folder)]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return pd.read_parquet(folder / "runs.parquet")
 
 
