@@ -5,6 +5,7 @@ here from notes), and the data sheets' counts.
 """
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from sensors import (
     PressureErrors,
     PressureSettings,
     Streams,
+    catalogue,
     preset,
 )
 from sensors.catalogue import accelerometer, differential_sensor, pressure_sensor
@@ -301,3 +303,38 @@ def test_swapped_tubes_are_swapped_where_nothing_else_makes_the_head_follow_the_
     around = Known(steady(600.0))
     head = AirDataHead(AirDataSettings(swapped_tubes=True), Streams(1), around, unit="ideal")
     assert head.full
+
+
+# -- a part of one's own ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes", "said"),
+    [
+        (
+            "range_pa = [-1500, 1500]",
+            "",
+            "mine.toml: key values.range_pa is missing",
+        ),
+        ("range_pa = [-1500, 1500]", "range_pa = [10, 1500]", "does not hold 0 Pa and what is above it"),
+        ("flow_pressure_pa = 59.3319", "", "key values.flow_pressure_pa is missing: a flow needs"),
+        ("calibration_pressure_pa = 96600", "calibration_hpa = 966", "key 'values.calibration_hpa' is unknown"),
+        ('kind = "differential"', 'kind = "differential_pressure"', "kind 'differential_pressure' is unknown"),
+        ("noise_pa = 0.2", "noise_pa = -0.2", "key modes.noise_pa is -0.2; it must be"),
+    ],
+)
+def test_a_file_that_is_wrong_is_refused_in_one_line(was, becomes, said, tmp_path):
+    text = (catalogue.FOLDER / "sdp33.toml").read_text(encoding="utf-8").replace(was, becomes, 1)
+    if "flow_pressure" in was:
+        text = text.replace('flow_pressure_pa = "', '#"', 1)
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=re.escape(said)) as caught:
+        preset(str(tmp_path / "mine.toml"))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_membrane_needs_no_flow(tmp_path):
+    """The three terms of a thermal part may be left out: then nothing flows, and nothing depends on the pressure."""
+    part = preset("ms4525do")
+    assert (part.calibration_pressure, part.flow, part.flow_pressure) == (0.0, 0.0, math.inf)
+    assert not Response(part, TUBES).passes
