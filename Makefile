@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m pip
 
-.PHONY: help fly test lint validate certify mutants golden bench aircraft clean
+.PHONY: help fly test lint validate certify mutants golden bench docs-numbers aircraft clean
 
 help:
 	@echo "make fly       install, then fly the scenario 'catapult' with its score and plots"
@@ -14,6 +14,7 @@ help:
 	@echo "make mutants   how many of 300 small errors the tests see (half an hour)"
 	@echo "make golden    fly the short flights whose figures are kept, and keep them anew"
 	@echo "make bench     what a step costs"
+	@echo "make docs-numbers  run what the docs show and has not been run, and write their pages"
 	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 (installs AeroSandbox)"
 	@echo "make clean     remove the environment and caches"
 
@@ -46,6 +47,9 @@ golden: $(VENV)/.dev
 
 bench: $(VENV)/.fly
 	$(BIN)/uavsim bench
+
+docs-numbers: $(VENV)/.dev
+	$(BIN)/python scripts/docs_numbers.py --missing
 
 aircraft: $(VENV)/.dev
 	$(PIP) install -q -e '.[aircraft]'

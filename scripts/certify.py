@@ -18,11 +18,13 @@ from pathlib import Path
 from typing import Any
 
 from uavsim.files import write_json, write_text
+from uavsim.score_keys import PHASES
 from uavsim.studies.certify.record import about, rows_in, run
 from uavsim.studies.certify.results import read, refreshed
 from uavsim.studies.certify.sets import SETS, Set
 from uavsim.studies.certify.verdict import lines
 from uavsim.studies.engine import engine, processes
+from uavsim.views.certified import save_coverage
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 RESULTS = REPOSITORY / "docs" / "results"
@@ -74,6 +76,8 @@ def certify(one: Set, options: argparse.Namespace) -> bool:
     print(*lines(verdict.checks), sep="\n")
     for bad in verdict.worst[: options.worst]:
         print("  ".join(str(value) for value in bad.values()))
+    if "levels" in verdict.tables and f"{PHASES[0]}.coverage" in verdict.tables["levels"][0]:
+        save_coverage(verdict.tables["levels"], options.out / one.name / "coverage.png")
     if options.results:
         result = {
             "set": one.name,

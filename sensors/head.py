@@ -93,10 +93,10 @@ class AirDataHead:
     """
 
     __slots__ = (
-        "_dt", "_last_static", "_lines", "_membranes", "_next_poll", "_open", "_ports", "_response", "_settings",
-        "_static_error", "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_thermometer",
-        "_told_temperature", "_total_error",
-        "_total_felt", "_total_truth", "covered_until", "due", "full", "static", "surroundings", "total",
+        "_dt", "_last_static", "_lines", "_membranes", "_next_poll", "_open", "_ports", "_recovery", "_response",
+        "_settings", "_static_error", "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature",
+        "_thermometer", "_told_temperature", "_total_error", "_total_felt", "_total_truth", "covered_until", "due",
+        "full", "static", "surroundings", "total",
     )  # fmt: skip
 
     def __init__(
@@ -130,6 +130,7 @@ class AirDataHead:
 
         self.surroundings = surroundings
         self._dt, self._steps_per_second = dt, 1.0 / dt
+        self._recovery = settings.thermometer_recovery
         self._total_error, self._static_error = total_port(settings.total_port), static_port(settings.static_port)
         self._total_felt: list[float] = []
         self._static_felt: list[float] = []
@@ -162,7 +163,8 @@ class AirDataHead:
             Specific force at the head, vibration included, body axes, m/s².
         """
         flow = NO_FLOW if self.surroundings is None else self.surroundings.flow()
-        total, static, self._temperature, _, _, _, _ = flow
+        total, static, temperature, _, _, _, _ = flow
+        self._temperature = self._warmed(total, static, temperature)
         self._t = t
         fx, fy, fz = force
         if not self._open or t < self.covered_until:
@@ -226,8 +228,8 @@ class AirDataHead:
         return self._response(total - static, static, temperature), temperature
 
     def _static_port(self, t: float) -> tuple[float, float]:
-        _, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
-        return p_static, temperature
+        p_total, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
+        return p_static, self._warmed(p_total, p_static, temperature)
 
     def _flow_at(self, t: float) -> Flow:
         flow: Flow = getattr(self.surroundings, "flow_at", no_flow)(t)  # not kept: it would hold the plant
@@ -243,9 +245,15 @@ class AirDataHead:
     def _static_read(self, t: float) -> tuple[float, float]:
         total, static, temperature, mach, alpha, beta, throttle = self._flow_at(t)
         port = self._static_error
-        if port is None or t < self.covered_until:
-            return static, temperature
-        return port(total, static, mach, alpha, beta, throttle), temperature
+        felt = static if port is None or t < self.covered_until else port(total, static, mach, alpha, beta, throttle)
+        return felt, self._warmed(total, static, temperature)
+
+    def _warmed(self, total: float, static: float, temperature: float) -> float:
+        """Temperature at the thermometer, K: the flow warms it by a share of 0.2 M²."""
+        if self._recovery == 0.0:
+            return temperature
+        stagnation: float = (total / static) ** (2.0 / 7.0)
+        return temperature * (1.0 + self._recovery * (stagnation - 1.0))
 
     def _mean_of_total(self, middle: float) -> tuple[float, float]:
         return self._mean(self._total_felt, middle, self.total.half_window), self._temperature

@@ -42,6 +42,7 @@ TYPICAL = 600.0  # Pa, at which the share is taken that the tubes lose: 31 m/s a
 LOST_SD = 0.25  # of what they lose; see above
 CALIBRATED = 1e-3  # of q_c, what a calibration of a head against a reference tube leaves: 0.05 % of the airspeed
 CALIBRATED_SHARE = 0.1  # what it leaves of what angles and propeller make
+RECOVERY_SD = 0.1  # of a thermometer's recovery factor, which is read off a table
 USUAL_MACH = 0.3  # at which an uncalibrated dependence on the Mach number counts
 COLUMN_SD = 0.05  # share of the air column's pressure that is not known: the air's density at the place
 
@@ -208,6 +209,8 @@ class HeadKnowledge:
     walk : float
         Random walk of the pair's difference, Pa/√s: that of both parts, and what both dies make of a climb's and of
         their own warmth (`_warming`).
+    thermometer_recovery, thermometer_recovery_sd : float
+        Share of the flow's warming that the thermometer reads, and its standard deviation.
     difference_sd : float
         What the pair's difference may be at rest where no tare has found it, Pa.
     difference : DifferenceKnowledge or None
@@ -222,6 +225,8 @@ class HeadKnowledge:
     column: float
     column_sd: float
     walk: float
+    thermometer_recovery: float
+    thermometer_recovery_sd: float
     difference_sd: float
     difference: DifferenceKnowledge | None = None
 
@@ -281,6 +286,8 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         column=column,
         column_sd=COLUMN_SD * abs(column),
         walk=hypot(*(part.walk for part in paired), *(_warming(part, settings.thermal) for part in paired)),
+        thermometer_recovery=settings.thermometer_recovery,
+        thermometer_recovery_sd=RECOVERY_SD if settings.thermometer_recovery > 0.0 else 0.0,
         difference_sd=hypot(total.offset_sd, static.offset_sd) if difference is None else total.offset_sd,
         difference=difference,
     )

@@ -482,6 +482,9 @@ class AirDataSettings:
         What is known of both ports' errors. "unit": a calibration of this head found them, with an error of its own (a
         thousandth of the impact pressure, and a tenth of what each angle and the propeller make); what the filter knows
         is taken off. "none": nothing but their size is known.
+    thermometer_recovery : float
+        Share r of the flow's warming that the thermometer feels, T (1 + 0.2 r M²): 0 inside a fuselage, 0.8 … 0.9 in
+        the stream.
     position : (x, y, z)
         Of the head from the aircraft's EYEPOINT, body axes, m; its pressures come from the flow there. This is the tube
         on the nose of fw8. A rig has its head where the stream is.
@@ -505,6 +508,7 @@ class AirDataSettings:
     batch: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     position: tuple[Arm, Arm, Arm] = (0.65, 0.0, 0.0)
     calibration: Calibration = "unit"
+    thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
 

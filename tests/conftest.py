@@ -1,5 +1,8 @@
 """Flights that many tests look at, flown once a session."""
 
+import json
+import os
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,6 +21,9 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
     reports = [report for outcome in ("passed", "failed") for report in terminalreporter.stats.get(outcome, ())]
     lines = [value for report in reports if report.when == "call" for name, value in report.user_properties
              if name == "measured"]  # fmt: skip
+    if file := os.environ.get("UAVSIM_FIGURES"):  # for the documentation, see scripts/docs_numbers.py
+        figures = [value for one in reports for name, value in one.user_properties if name == "figure"]
+        Path(file).write_text(json.dumps(figures, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
     if lines:
         terminalreporter.section("measured: least … median … greatest")
         for line in lines:

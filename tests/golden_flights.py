@@ -112,6 +112,7 @@ AIDED = (
     "estimator.aided.shear_along=0.4", "estimator.aided.launch_height=1.7", "estimator.aided.rail_wind_along=0.5",
     "estimator.aided.rail_wind_side=-0.4", "estimator.aided.rail_wind_down=0.1", "estimator.aided.rail_wind_sd=0.6",
     "estimator.aided.lift_slope=9.1", "estimator.aided.lift_zero=-0.06", 'air_data.calibration="none"',
+    "air_data.thermometer_recovery=0.8",
     "estimator.aided.unfolding_time=0.5", "estimator.aided.unfolding_rate=1.3", "estimator.aided.flight_force=70",
     "mismatch.acceleration_calibration=0.5", "flight_computer.speed_gain_min=12",
     "aircraft.properties.ap/gain/pitch=0.3", "aircraft.mass_factor=1.06", "aircraft.cg_shift=-0.008",

@@ -8,9 +8,9 @@ import pytest
 
 import uavsim
 from sensors import AccelerometerKnowledge, AirDataHead, AirDataSettings, HeadKnowledge, Streams
-from sensors.knowledge import DifferenceKnowledge, PressureKnowledge
+from sensors.knowledge import DifferenceKnowledge, PortKnowledge, PressureKnowledge
 from uavsim import beliefs
-from uavsim.beliefs import believed_air, believed_flow, believed_noise, calibrated, turbulence
+from uavsim.beliefs import Calibration, believed_air, believed_flow, believed_noise, calibrated, turbulence
 from uavsim.cosim import draw
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.plants.air.dryden import deviations
@@ -76,17 +76,26 @@ def test_each_mismatch_is_a_factor_on_its_own_belief(key: str, field: str) -> No
 
 KNOWN = [("known_of_accelerometer", f"{field.name}") for field in fields(AccelerometerKnowledge)] + [
     ("known_of_head", f"{path}{field.name}")
-    for path, kind in (("", HeadKnowledge), ("total.", PressureKnowledge), ("static.", PressureKnowledge))
+    for path, kind in zip(
+        ("", "total.", "static.", "ports."),
+        (HeadKnowledge, PressureKnowledge, PressureKnowledge, PortKnowledge),
+        strict=True,
+    )
     for field in fields(kind)
     if not path or field.name not in ("walk", "column", "offset_sd")  # of the pair's difference, which the head has
-    if field.name not in ("total", "static", "difference")
+    if field.name not in ("total", "static", "ports", "difference")
 ]
 
 
 @pytest.mark.parametrize(("of", "name"), KNOWN)
 def test_every_number_of_the_knowledge_is_believed(of: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Twice a number of the knowledge, and the belief is another."""
-    flown = scenario("air_data.pipe=0.05", "air_data.acceleration_sensitivity=true", "air_data.static.normal=[1,0,1]")
+    flown = scenario(
+        "air_data.pipe=0.05", "air_data.acceleration_sensitivity=true", "air_data.static.normal=[1,0,1]",
+        "air_data.static_port.error_alpha=0.1", "air_data.static_port.error_mach2=0.1",
+        "air_data.static_port.slipstream=0.1", "air_data.total_port.slipstream=0.1",
+        "air_data.thermometer_recovery=0.4",
+    )  # fmt: skip
     plain, known = believed_noise(flown), getattr(beliefs, of)
 
     def doubled(*settings: object) -> object:
@@ -141,13 +150,27 @@ def test_a_calibration_is_of_the_units_that_fly_with_its_error() -> None:
     for seed in range(200):
         flown = plain.with_seed(seed)
         head = AirDataHead(flown.air_data, Streams(seed, 0))
-        errors.append(draw(flown).calibration[0] - head.total.acceleration[0])
-        assert draw(flown).calibration[1] == 0.0  # its membrane lies across
+        errors.append(draw(flown).calibration.total - head.total.acceleration[0])
+        assert draw(flown).calibration.static == 0.0  # its membrane lies across
     assert np.std(errors) == pytest.approx(0.06, rel=0.2)
     noise = believed_noise(plain, draw(plain).calibration)
-    assert noise.acceleration == pytest.approx(draw(plain).calibration[0])
+    assert noise.acceleration == pytest.approx(draw(plain).calibration.total)
     assert noise.acceleration_sd == pytest.approx(0.06)
-    assert believed_noise(scenario(), (0.5, 0.0)).acceleration == 0.0  # membranes that feel nothing
+    assert believed_noise(scenario(), Calibration(0.5)).acceleration == 0.0  # membranes that feel nothing
+
+
+def test_a_calibration_finds_the_ports_errors_to_what_is_believed() -> None:
+    """200 heads: c₀ as it is found less 0.02 scatters by 0.001 of q_c (χ², 1e-4: within 20 %)."""
+    plain = scenario()
+    found = [believed_noise(plain, draw(plain.with_seed(seed)).calibration).head for seed in range(200)]
+    assert np.mean([head.error for head in found]) == pytest.approx(0.02, abs=4e-4)
+    assert np.std([head.error for head in found]) == pytest.approx(1e-3, rel=0.2)
+    assert np.std([head.error_beta2 for head in found]) == pytest.approx(0.055, rel=0.2)
+    assert found[0].position_sd == 1e-3
+    unknown = believed_noise(scenario("air_data.calibration=none"), draw(plain).calibration).head
+    assert (unknown.error, unknown.position_sd, unknown.beta2_sd) == (0.0, 0.02, 0.55)
+    kept = believed_noise(scenario("mismatch.position=0", "mismatch.position_sd=0"), draw(plain).calibration).head
+    assert (kept.error, kept.error_beta2, kept.position_sd, kept.beta2_sd) == (0.0, 0.0, 0.0, 0.0)
     assert calibrated(plain, Streams(1, 0)) == calibrated(plain, Streams(1, 0))
 
 

@@ -62,6 +62,7 @@ def test_tune_writes_a_scenario_that_flies(tmp_path: Path) -> None:
     assert run.returncode == 0, run.stderr
     assert "[detector]" in run.stdout
     assert 'kind = "double-threshold"' in run.stdout
+    assert "worst class, tuned: " in run.stdout
     fly = [sys.executable, "-m", "uavsim.cli", "fly", str(file), "--set", "duration=8", "--set", "expect=timeout"]
     flown = subprocess.run(
         [*fly, "--no-plots", "--out", str(tmp_path / "flight")], check=False, capture_output=True, text=True
@@ -83,6 +84,7 @@ def test_tune_writes_a_scenario_that_flies(tmp_path: Path) -> None:
         (("--false-alarms", "1e-6"), "an hour can be shown"),
         (("catapul",), "did you mean 'catapult'"),
         (("catapult", "--detector", "cusum", "--trials", "3"), "--trials"),
+        (("weak-launch", "--detector", "cusum"), "expects 'missed_launch'"),
     ],
 )
 def test_what_cannot_be_tuned_is_one_line(tmp_path: Path, arguments: tuple[str, ...], named: str) -> None:

@@ -313,6 +313,7 @@ def test_rigs_take_the_step_that_they_are_told(scenario: str) -> None:
 
 READ_BY_THE_HEAD = (
     "mach", "p_static", "temperature", "airspeed", "alpha", "beta", "p", "q", "r", "cg_x", "cg_y", "cg_z",
+    "throttle",
 )  # fmt: skip
 RAW = {name: i for i, name in enumerate(columns.RAW)}
 
@@ -361,7 +362,11 @@ def test_nan_in_every_truth_column_that_no_sensor_reads_changes_nothing(scenario
     assert shown >= {"cg_x", "cg_y", "cg_z"}  # where it is, and not a column of a flight
     shown -= {"cg_x", "cg_y", "cg_z"}
     shown -= {name for name in shown if name.startswith(("mean_wind_", "gust_", "air_"))}  # the air's own record
-    assert shown == {"t", *FELT} - {"fx", "fy", "fz"}  # the force is handed on as it is felt, not by the record
+    assert shown == {"t", "throttle", *FELT} - {
+        "fx",
+        "fy",
+        "fz",
+    }  # the force is handed on as it is felt, not by the record
     assert len(clean[3]) == 4  # it flew all the way to the motor
 
 

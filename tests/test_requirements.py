@@ -37,13 +37,22 @@ Q = 'key="launch.latency",statistic="p95"'
         ('key="launch.latency",statistic="rate_per_hour",maximum=1,exposure="armed"', "counts launch.false_detections"),
         (
             'key="launch.false_detections",statistic="rate_per_hour",maximum=1',
-            "exposure is missing; it must be one of armed",
+            "exposure is missing; it must be one of armed, handling, vibration, soft drops, held load",
         ),
         ('key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="flight"', "must be one of armed"),
+        (
+            'key="launch.false_wing_commands",statistic="rate_per_hour",maximum=1,exposure="armed"',
+            "exposure = 'armed': must be one of handling, vibration, soft drops, held load",
+        ),
+        (
+            'key="outcome",statistic="rate_per_hour",equals="crashed",maximum=1,exposure="handling"',
+            "exposure = 'handling': must be one of armed, flight",
+        ),
+        ('key="launch.false_wing_commands",statistic="p95",maximum=1', "is no number of the score"),
         ('key="airspeed.hazard",statistic="rate_per_hour",maximum=1,exposure="armed"', "must be one of flight"),
         (
             'key="launch.false_detections",statistic="rate_per_hour",maximum=1,exposure="x"',
-            "must be 'armed' or 'flight'",
+            "must be 'armed', 'flight', 'handling'",
         ),
         (
             'key="launch.false_detections",statistic="rate_per_hour",maximum=0,exposure="armed"',
@@ -68,6 +77,7 @@ def test_every_statistic_can_be_asked_and_says_so_in_words() -> None:
             '{key="airspeed.rmse",statistic="probability",minimum=0.1,maximum=1,at_most=0.9},'
             '{key="launch.false_detections",statistic="rate_per_hour",maximum=0.5,exposure="armed"},'
             '{key="outcome",statistic="rate_per_hour",equals="crashed",maximum=0.5,exposure="flight"},'
+            '{key="launch.false_wing_commands",statistic="rate_per_hour",maximum=0.1,exposure="soft drops"},'
             '{key="launch.latency",minimum=0,maximum=0.05}]'
         ],
     )
@@ -78,9 +88,10 @@ def test_every_statistic_can_be_asked_and_says_so_in_words() -> None:
         "P(0.1 ≤ airspeed.rmse ≤ 1) ≤ 0.9",
         "launch.false_detections ≤ 0.5 per armed hour",
         "outcome = crashed ≤ 0.5 per flight hour",
+        "launch.false_wing_commands ≤ 0.1 per hour of soft drops",
         "0 ≤ launch.latency ≤ 0.05, every flight",
     ]
-    assert [one.of_each_flight for one in scenario.requirements] == [False] * 6 + [True]
+    assert [one.of_each_flight for one in scenario.requirements] == [False] * 7 + [True]
     again = type(scenario).from_dict(scenario.to_dict())
     assert again.requirements == scenario.requirements
 

@@ -22,6 +22,7 @@ from uavsim import misleading
 from uavsim.consistency import LAGS, LEAST, ljung_box
 from uavsim.criteria import outcome, reason
 from uavsim.files import without_none
+from uavsim.installation import installation
 from uavsim.judged import Array, Judged
 from uavsim.score_keys import PHASES, PRESSURE, PRESSURES, SPEEDS
 
@@ -54,6 +55,7 @@ def _score(flight: Judged) -> dict[str, Any]:
         "airspeed": airspeed,
         "pressure": {name: _pressure(flight, name) for name in PRESSURES},
         "flight": _flight(flight),
+        "installation": installation(flight.tables["truth"], flight.scenario.air_data, flies=not flight.is_rig),
         "requirements": [],
         "remarks": [],
     }

@@ -27,6 +27,7 @@ FLIGHT = (
     *("rail_exit_time", "rail_exit_speed", "wing_start_time", "wing_out_time"),
     *("cruise_airspeed", "cruise_airspeed_sd", "duration", "rail_exit_altitude", "lowest_altitude_after_exit"),
 )
+INSTALLATION = ("calibrated_airspeed", "error", "over_limit")
 
 NUMBERS = (
     "seed",
@@ -37,6 +38,7 @@ NUMBERS = (
     *(f"airspeed.{phase}.{speed}.{name}" for phase in PHASES for speed in SPEEDS for name in OF_SPEED),
     *(f"pressure.{channel}.{name}" for channel in PRESSURES for name in PRESSURE),
     *(f"flight.{name}" for name in FLIGHT),
+    *(f"installation.{name}" for name in INSTALLATION),
 )
 """Each by its key, joined by dots."""
 

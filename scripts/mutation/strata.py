@@ -30,8 +30,8 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
     ),
     "flight computer": (
-        ("uavsim/onboard/flight_computer.py",),
-        ("tests/onboard/test_flight_computer.py", FLIGHTS),
+        ("uavsim/onboard/flight_computer.py", "uavsim/onboard/stroke.py"),
+        ("tests/onboard/test_flight_computer.py", "tests/onboard/test_stroke.py", FLIGHTS),
     ),
     "watch": (
         tuple(

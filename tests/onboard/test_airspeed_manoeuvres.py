@@ -62,7 +62,7 @@ def test_an_accelerometer_that_is_silent_for_2_s_condemns_no_port():
     assert np.abs(flown.after(1.0)[:, 4]).max() < 1.0
 
 
-@pytest.mark.parametrize("size", [2.0, -2.5])
+@pytest.mark.parametrize("size", [2.5, -3.0])
 def test_an_offset_that_jumps_is_charged_to_the_accelerometer(size):
     """In still air a step of f_x from one reading to the next: no port is flagged, V stays right, the part is named."""
     readings = fly(Flight(duration=15.0), 9400)

@@ -27,7 +27,22 @@ from sensors.settings import (
 )
 
 DT = 1e-3
-QUIET = AirDataSettings(
+
+
+def bare(**chosen):
+    """A head whose ports read the truth, but for what is chosen."""
+    return AirDataSettings(**({"total_port": ideal_total(), "static_port": ideal_static()} | chosen))
+
+
+def ideal_total(**chosen):
+    return TotalPortSettings(**({"probe": "ideal"} | chosen))
+
+
+def ideal_static(**chosen):
+    return StaticPortSettings(**({"error": 0.0, "error_alpha2": 0.0, "error_beta2": 0.0} | chosen))
+
+
+QUIET = bare(
     thermal=ThermalSettings(lag=1e-9),  # a die as warm as the air
     total=PressureSettings(preset="bmp581", mode="x1/x1", noise_scale=0.0),
     static=PressureSettings(preset="bmp581", mode="x1/x1", noise_scale=0.0),
@@ -63,7 +78,7 @@ def _calm(_t):
 
 
 def test_polls_come_at_their_own_rate_and_phase():
-    rows = _fly(AirDataHead(AirDataSettings(rate=100.0), Streams(1)), _calm, 2.0)
+    rows = _fly(AirDataHead(bare(rate=100.0), Streams(1)), _calm, 2.0)
     phase = rows[0, 0]
     assert 0 <= phase < 0.01
     assert rows[:, 0].tolist() == [phase + k / 100.0 for k in range(200)]
@@ -71,7 +86,7 @@ def test_polls_come_at_their_own_rate_and_phase():
 
 def test_a_row_carries_finished_conversions_and_tells_their_ends():
     """Never from the future, never older than a period; not a number until there is one."""
-    settings = AirDataSettings(rate=1000.0)
+    settings = bare(rate=1000.0)
     head = AirDataHead(settings, Streams(2))
     rows = _fly(head, _calm, 1.0)
     for value, end, device in ((1, 4, head.total), (2, 5, head.static)):
@@ -87,14 +102,14 @@ def test_a_row_carries_finished_conversions_and_tells_their_ends():
 
 def test_a_value_polled_again_is_the_same_with_the_same_end():
     """A BMP390 at 200 Hz polled at 1 kHz: each value five times or so."""
-    rows = _fly(AirDataHead(AirDataSettings(rate=1000.0), Streams(3)), _calm, 1.0)[20:]
+    rows = _fly(AirDataHead(bare(rate=1000.0), Streams(3)), _calm, 1.0)[20:]
     new = np.diff(rows[:, 4]) > 0
     assert new.sum() == pytest.approx(0.98 * 200, abs=15)
     assert np.array_equal(rows[1:][~new, 1], rows[:-1][~new, 1])
 
 
 def test_the_pair_is_not_simultaneous_and_each_clock_drifts_its_own_way():
-    rows = _fly(AirDataHead(AirDataSettings(), Streams(4)), _calm, 3.0)[5:]
+    rows = _fly(AirDataHead(bare(), Streams(4)), _calm, 3.0)[5:]
     apart = rows[:, 4] - rows[:, 5]
     assert np.ptp(apart) > 1e-3
 
@@ -120,8 +135,8 @@ def test_rows_do_not_depend_on_the_plants_step():
     def ramp(t):
         return (101_325 + 500 * t, 101_325 - 100 * t, 288.15 + t)
 
-    fine = _fly(AirDataHead(AirDataSettings(), Streams(6)), ramp, 1.0, dt=5e-4)
-    coarse = _fly(AirDataHead(AirDataSettings(), Streams(6)), ramp, 1.0, dt=4e-3)
+    fine = _fly(AirDataHead(bare(), Streams(6)), ramp, 1.0, dt=5e-4)
+    coarse = _fly(AirDataHead(bare(), Streams(6)), ramp, 1.0, dt=4e-3)
     assert coarse == pytest.approx(fine, abs=1e-9, nan_ok=True)
 
 
@@ -195,14 +210,14 @@ def test_no_cover_by_default():
 
 
 def test_temperature_is_the_static_sensors():
-    head = AirDataHead(AirDataSettings(), Streams(8))
+    head = AirDataHead(bare(), Streams(8))
     rows = _fly(head, _calm, 1.0)[5:]
     assert rows[:, 3].mean() == pytest.approx(288.15 + head.static.temperature_offset, abs=0.01)
     assert head.static.temperature_offset != head.total.temperature_offset
 
 
 def test_each_sensor_is_as_its_own_settings_say():
-    settings = AirDataSettings(
+    settings = bare(
         total=PressureSettings(preset="bmp581", mode="x4/x1", offset_pa=40.0),
         static=PressureSettings(preset="bmp390", mode="x8/x1", iir=4),
     )
@@ -214,7 +229,7 @@ def test_each_sensor_is_as_its_own_settings_say():
 
 def test_two_sensors_of_a_kind_are_two_units_with_independent_noise():
     """n = 2000 pairs; correlation below 4/√n by chance but for 6 in 100 000."""
-    head = AirDataHead(replace(AirDataSettings(), rate=100.0), Streams(10))
+    head = AirDataHead(replace(bare(), rate=100.0), Streams(10))
     rows = _fly(head, _calm, 20.0)[5:]
     assert head.total.offset != head.static.offset
     assert abs(np.corrcoef(rows[:, 1], rows[:, 2])[0, 1]) < 4 / np.sqrt(len(rows))
@@ -230,11 +245,11 @@ RHO = 101_325.0 / (287.05287 * 288.15)  # kg/m³, of the calm air below
 def _quiet(mode="x1/x1", **more):
     """A pair of BMP390 without noise, drift and steps."""
     sensor = PressureSettings(mode=mode, noise_scale=0.0, errors=SILENT)
-    return replace(AirDataSettings(total=sensor, static=sensor, thermal=ThermalSettings(lag=1e-9)), **more)
+    return replace(bare(total=sensor, static=sensor, thermal=ThermalSettings(lag=1e-9)), **more)
 
 
 FEELING = _quiet(acceleration_sensitivity=True)
-SHAKEN = AirDataSettings(acceleration_sensitivity=True)  # as the parts come
+SHAKEN = bare(acceleration_sensitivity=True)  # as the parts come
 
 
 def _flow(total=101_325.0, static=101_325.0, temperature=288.15, *, angles=(0.0, 0.0), throttle=0.0, force=LEVEL):
@@ -255,13 +270,13 @@ def _tell(head, flow, duration, dt=DT):
 BLOCKED = (PortFault("blocked", start=0.2),)
 REASONS = [
     _quiet(pipe=0.05),
-    _quiet(total_port=TotalPortSettings(probe="kiel")),
-    _quiet(total_port=TotalPortSettings(slipstream=0.1)),
-    _quiet(total_port=TotalPortSettings(tube=TubeSettings(length=0.1))),
-    _quiet(total_port=TotalPortSettings(faults=BLOCKED)),
-    _quiet(static_port=StaticPortSettings(error=0.01)),
-    _quiet(static_port=StaticPortSettings(tube=TubeSettings(length=0.1))),
-    _quiet(static_port=StaticPortSettings(faults=BLOCKED)),
+    _quiet(total_port=ideal_total(probe="kiel")),
+    _quiet(total_port=ideal_total(slipstream=0.1)),
+    _quiet(total_port=ideal_total(tube=TubeSettings(length=0.1))),
+    _quiet(total_port=ideal_total(faults=BLOCKED)),
+    _quiet(static_port=ideal_static(error=0.01)),
+    _quiet(static_port=ideal_static(tube=TubeSettings(length=0.1))),
+    _quiet(static_port=ideal_static(faults=BLOCKED)),
 ]
 
 
@@ -271,24 +286,22 @@ def test_anything_between_air_and_sensors_makes_a_head_full(choice):
 
 
 def test_a_bare_pair_need_not_be_told():
-    assert not AirDataHead(AirDataSettings(), Streams(1)).full
+    assert not AirDataHead(bare(), Streams(1)).full
     assert not AirDataHead(FEELING, Streams(1), unit="ideal").full  # nothing is felt by its membranes
     assert AirDataHead(FEELING, Streams(1), unit="typical").full
     sensors = PressureSettings(errors=PressureErrors(acceleration=0.0))
-    assert not AirDataHead(
-        AirDataSettings(total=sensors, static=sensors, acceleration_sensitivity=True), Streams(1)
-    ).full
+    assert not AirDataHead(bare(total=sensors, static=sensors, acceleration_sensitivity=True), Streams(1)).full
 
 
 def test_a_head_that_is_told_nothing_reads_no_number():
-    for head in (AirDataHead(AirDataSettings(), Streams(1)), AirDataHead(_quiet(pipe=0.05), Streams(1))):
+    for head in (AirDataHead(bare(), Streams(1)), AirDataHead(_quiet(pipe=0.05), Streams(1))):
         rows = np.array(head.step(1.0))
         assert len(rows) == 100
         assert np.isnan(rows[:, 1:4]).all()
 
 
 def test_each_sensors_unit_is_its_own_settings():
-    settings = AirDataSettings(total=PressureSettings(unit="ideal"), static=PressureSettings(unit="typical"))
+    settings = bare(total=PressureSettings(unit="ideal"), static=PressureSettings(unit="typical"))
     head = AirDataHead(settings, Streams(1))
     assert (head.total.offset, head.static.offset) == (0.0, 50.0)
     assert AirDataHead(settings, Streams(1), unit="ideal").static.offset == 0.0
@@ -296,7 +309,7 @@ def test_each_sensors_unit_is_its_own_settings():
 
 def test_rate_errors_and_normals_are_the_settings():
     sensor = PressureSettings(rate_error_percent=5.0, normal=(0.0, 2.0, 0.0))
-    head = AirDataHead(AirDataSettings(total=sensor), Streams(1), unit="typical")
+    head = AirDataHead(bare(total=sensor), Streams(1), unit="typical")
     assert head.total.acceleration == (0.0, 0.2, 0.0)
     assert head.static.acceleration == (0.0, 0.0, 0.2)
     assert 2 * head.total.half_window == pytest.approx(4.82e-3 / (1 + 0.02 + 0.05))
@@ -310,12 +323,12 @@ def test_both_ways_agree_on_a_ramp(mode):
         return (101_325 + 900 * t, 101_325 - 90 * t, 288.15)
 
     sensor = PressureSettings(mode=mode, errors=PressureErrors(acceleration=0.0, quantisation=False))
-    settings = AirDataSettings(total=sensor, static=sensor)
-    bare = AirDataHead(settings, Streams(6))
-    told = AirDataHead(replace(settings, total_port=TotalPortSettings(probe="kiel")), Streams(6))
-    assert (bare.full, told.full) == (False, True)
+    settings = bare(total=sensor, static=sensor)
+    open_ = AirDataHead(settings, Streams(6))
+    told = AirDataHead(replace(settings, total_port=ideal_total(probe="kiel")), Streams(6))
+    assert (open_.full, told.full) == (False, True)
     rows = _tell(told, lambda t: (*air(t), 0.1, 0.0, 0.0, 0.0, *LEVEL), 1.0)
-    assert rows == pytest.approx(_fly(bare, air, 1.0), abs=1e-7, nan_ok=True)
+    assert rows == pytest.approx(_fly(open_, air, 1.0), abs=1e-7, nan_ok=True)
 
 
 @pytest.mark.parametrize("mode", ["x1/x1", "x8/x1", "x32/x2"])
@@ -330,7 +343,7 @@ def test_a_conversion_is_the_mean_over_its_window(mode, frequency):
     def total(t):
         return 101_325.0 + amplitude * np.sin(2 * np.pi * frequency * t)
 
-    head = AirDataHead(_quiet(mode, total_port=TotalPortSettings(probe="kiel")), Streams(8), unit="ideal")
+    head = AirDataHead(_quiet(mode, total_port=ideal_total(probe="kiel")), Streams(8), unit="ideal")
     window = 2 * head.total.half_window
     rows = _tell(head, lambda t: _flow(total=float(total(t))), 1.0)
     rows = rows[np.isfinite(rows[:, 4])]
@@ -352,9 +365,7 @@ def test_a_conversion_is_the_mean_over_its_window(mode, frequency):
 def test_conversions_made_before_the_poll_are_the_same(monkeypatch):
     """A head that is polled once in 2.5 s remembers no more than it needs; with a filter, that is every conversion."""
     for iir in (0, 4):
-        settings = AirDataSettings(
-            total=PressureSettings(iir=iir), static=PressureSettings(iir=iir), rate=0.4, pipe=0.05
-        )
+        settings = bare(total=PressureSettings(iir=iir), static=PressureSettings(iir=iir), rate=0.4, pipe=0.05)
         monkeypatch.setattr("sensors.head.MOST_REMEMBERED", 10**9)
         at_once = _tell(AirDataHead(settings, Streams(2)), _flow(), 8.0)
         monkeypatch.setattr("sensors.head.MOST_REMEMBERED", 64)
@@ -409,7 +420,7 @@ def test_a_pipe_adds_the_weight_of_its_air():
     push = _flow(force=(80.0, 0.0, -9.80665))
     bare, piped = (
         _tell(
-            AirDataHead(_quiet(total_port=TotalPortSettings(probe="kiel"), pipe=pipe), Streams(1), unit="ideal"),
+            AirDataHead(_quiet(total_port=ideal_total(probe="kiel"), pipe=pipe), Streams(1), unit="ideal"),
             push,
             0.5,
         )
@@ -421,15 +432,15 @@ def test_a_pipe_adds_the_weight_of_its_air():
 
 def test_a_pipe_replaces_both_tubes_and_keeps_their_directions():
     aft, up = TubeSettings(length=3.0), TubeSettings(length=2.0, direction=(0.0, 0.0, -1.0))
-    settings = _quiet(total_port=TotalPortSettings(tube=aft), static_port=StaticPortSettings(tube=up), pipe=0.1)
+    settings = _quiet(total_port=ideal_total(tube=aft), static_port=ideal_static(tube=up), pipe=0.1)
     rows = _tell(AirDataHead(settings, Streams(1), unit="ideal"), _flow(force=(50.0, 0.0, -9.80665)), 0.5)[20:]
     assert rows[:, 1] - 101_325.0 == pytest.approx(RHO * 50.0 * 0.1, rel=1e-4)
     assert rows[:, 2] - 101_325.0 == pytest.approx(-RHO * 9.80665 * 0.1, rel=1e-4)
 
 
 def test_ports_errors_reach_the_readings():
-    port = TotalPortSettings(probe="plain", slipstream=0.5)
-    settings = _quiet(total_port=port, static_port=StaticPortSettings(error=0.1))
+    port = ideal_total(probe="plain", slipstream=0.5)
+    settings = _quiet(total_port=port, static_port=ideal_static(error=0.1))
     flow = _flow(total=101_925.0, angles=(np.radians(20.0), 0.0), throttle=1.0)
     rows = _tell(AirDataHead(settings, Streams(1), unit="ideal"), flow, 0.2)[5:]
     assert rows[:, 1] == pytest.approx(101_325.0 + 600.0 * 1.5 * 0.99, abs=1e-6)
@@ -437,8 +448,8 @@ def test_ports_errors_reach_the_readings():
 
 
 def test_the_cover_hides_wind_and_position_error_alike():
-    port, tube = TotalPortSettings(probe="plain"), TubeSettings(length=0.05)
-    settings = _quiet(total_port=port, static_port=StaticPortSettings(error=0.1, tube=tube))
+    port, tube = ideal_total(probe="plain"), TubeSettings(length=0.05)
+    settings = _quiet(total_port=port, static_port=ideal_static(error=0.1, tube=tube))
     head = AirDataHead(settings, Streams(7), covered_until=0.5, unit="ideal")
     rows = _tell(head, _flow(total=101_575.0, force=(0.0, 0.0, 0.0)), 1.0)[5:]
     covered = rows[:, [4, 5]].max(axis=1) < 0.5
@@ -450,7 +461,7 @@ def test_the_cover_hides_wind_and_position_error_alike():
 
 
 def test_a_blocked_total_port_holds_while_the_static_pressure_goes_on():
-    settings = _quiet(total_port=TotalPortSettings(faults=(PortFault("blocked", start=0.3, stop=0.6),)))
+    settings = _quiet(total_port=ideal_total(faults=(PortFault("blocked", start=0.3, stop=0.6),)))
     head = AirDataHead(settings, Streams(1), unit="ideal")
     rows = _tell(head, lambda t: _flow(total=101_925.0 - 500 * t, static=101_325.0 - 500 * t), 1.0)[5:]
     held = (rows[:, 4] > 0.31) & (rows[:, 4] < 0.6)
@@ -479,7 +490,7 @@ def test_clocks_run_free_and_rows_tell_their_conversions():
 
 
 @pytest.mark.parametrize("iir", [0, 4])
-@pytest.mark.parametrize("port", [TotalPortSettings(), TotalPortSettings(probe="plain", tube=TubeSettings(length=0.3))])
+@pytest.mark.parametrize("port", [ideal_total(), ideal_total(probe="plain", tube=TubeSettings(length=0.3))])
 def test_air_that_is_no_number_is_read_so_and_forgotten(iir, port):
     """Told of each step: NaN while it lasts, a number one conversion later; the temperature is that of the poll."""
     sensor = PressureSettings(iir=iir)
@@ -493,7 +504,7 @@ def test_air_that_is_no_number_is_read_so_and_forgotten(iir, port):
 
 @pytest.mark.parametrize("iir", [0, 4])
 def test_air_that_is_no_number_comes_and_goes_in_a_bare_head(iir):
-    head = AirDataHead(AirDataSettings(total=PressureSettings(iir=iir)), Streams(3), unit="ideal")
+    head = AirDataHead(bare(total=PressureSettings(iir=iir)), Streams(3), unit="ideal")
     rows = _fly(head, lambda t: (float("nan"),) * 3 if 0.3 <= t < 0.4 else _calm(t), 1.0)
     assert np.isnan(rows[(rows[:, 4] > 0.305) & (rows[:, 4] < 0.4), 1]).all()
     assert np.isfinite(rows[-50:]).all()
@@ -501,10 +512,10 @@ def test_air_that_is_no_number_comes_and_goes_in_a_bare_head(iir):
 
 @pytest.mark.parametrize("unit", ["random", "ideal"])
 def test_a_second_head_changes_no_draw(unit):
-    alone = _tell(AirDataHead(AirDataSettings(pipe=0.05), Streams(5), unit=unit), _flow(), 0.5)
+    alone = _tell(AirDataHead(bare(pipe=0.05), Streams(5), unit=unit), _flow(), 0.5)
     streams = Streams(5)
     other = AirDataHead(SHAKEN, streams, name="spare")
-    head = AirDataHead(AirDataSettings(pipe=0.05), streams, unit=unit)
+    head = AirDataHead(bare(pipe=0.05), streams, unit=unit)
     spare = _tell(other, _flow(), 0.5)
     assert np.array_equal(_tell(head, _flow(), 0.5), alone, equal_nan=True)
     assert not np.array_equal(spare, alone, equal_nan=True)
@@ -521,9 +532,9 @@ def test_a_head_polled_by_nobody_in_between_draws_the_same():
 def test_a_tube_whose_direction_has_no_length_is_refused_at_once():
     tube = TubeSettings(length=0.1, direction=(0.0, 0.0, 0.0))
     with pytest.raises(ValueError, match="direction of a tube"):
-        AirDataHead(_quiet(total_port=TotalPortSettings(tube=tube)), Streams(1))
+        AirDataHead(_quiet(total_port=ideal_total(tube=tube)), Streams(1))
     with pytest.raises(ValueError, match="normal of a membrane"):
-        AirDataHead(AirDataSettings(total=PressureSettings(normal=(0.0, 0.0, 0.0))), Streams(1))
+        AirDataHead(bare(total=PressureSettings(normal=(0.0, 0.0, 0.0))), Streams(1))
 
 
 # -- anything ----------------------------------------------------------------------------------------------------------

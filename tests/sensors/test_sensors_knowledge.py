@@ -198,6 +198,16 @@ AIR: dict[str, Named] = {
     **of_pressure("total"),
     **of_pressure("static"),
     "static.errors.thermometer": (3.0, *more("head.temperature_sd", 8.0 * BAROMETER.temperature_offset_sd**2)),
+    "thermometer_recovery": (0.8, *is_("head.thermometer_recovery", 0.8)),
+    "calibration": ("none", *is_("head.ports.position_sd", 0.02)),
+    "total_port.probe": ("kiel", *is_("head.ports.limit", math.radians(40.0))),
+    "total_port.slipstream": (0.3, *is_("head.ports.total_slipstream", 0.3)),
+    "static_port.slipstream": (0.2, *is_("head.ports.static_slipstream", 0.2)),
+    "static_port.error": (0.03, *is_("head.ports.error", 0.03)),
+    "static_port.error_alpha": (0.2, *is_("head.ports.error_alpha", 0.2)),
+    "static_port.error_alpha2": (-1.0, *is_("head.ports.alpha2_sd", 0.1)),
+    "static_port.error_beta2": (-1.0, *is_("head.ports.error_beta2", -1.0)),
+    "static_port.error_mach2": (0.2, *is_("head.ports.error_mach2", 0.2)),
     "pipe": (0.05, *times("head.total.column", 0.05 / 0.3)),
     "acceleration_sensitivity": (False, *is_("head.static.membrane_sd", 0.0)),
     "thermal.self_heating": (5.0, *more("head.temperature_sd", 25.0)),
@@ -277,8 +287,6 @@ NOT_YET = {
     "air_data.tare": "when the tare is taken the estimator is told",
     "air_data.tare_duration": "when the tare is taken the estimator is told",
     "air_data.cover_off": "when the tare is taken the estimator is told",
-    "air_data.total_port.probe": "the angle's effect is not believed yet",
-    "air_data.static_port.error": "the position error is not believed yet",
     **{
         f"air_data.{name}{key}": reason
         for name in ("total", "static", "differential")
@@ -294,13 +302,8 @@ NOT_YET = {
         f"air_data.{name}{key}": reason
         for name in ("total", "static")
         for key, reason in {
-            "_port.slipstream": "the propeller's share of the pressure is not believed yet",
             "_port.faults": BREAKS,
         }.items()
-    },
-    **{
-        f"air_data.static_port.error_{term}": "the position error is not believed yet"
-        for term in ("alpha", "alpha2", "beta2", "mach2")
     },
 }
 
@@ -347,7 +350,7 @@ def test_each_named_error_changes_the_knowledge_to_its_value(key: str) -> None:
     assert after[number] == pytest.approx(expected(before), rel=2e-4, abs=1e-8)
 
 
-@pytest.mark.parametrize("key", [key for key in NOT_YET if key.startswith(("air_data.static_port.error", "vibration"))])
+@pytest.mark.parametrize("key", [key for key in NOT_YET if key.startswith("vibration")])
 def test_what_is_on_the_list_is_not_in_the_knowledge(key: str) -> None:
     """Else it belongs among the named: numbers are tried, as far as the list's keys are some."""
     old = BASE

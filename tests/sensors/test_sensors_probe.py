@@ -1,6 +1,6 @@
 """The ports: angle sensitivity, position error, slipstream, each alone."""
 
-from math import acos, cos, nan, pi, radians
+from math import acos, cos, nan, pi, radians, sin
 
 import numpy as np
 import pytest
@@ -15,6 +15,9 @@ P_TOTAL = P_STATIC + Q
 PROBES = ["plain", "bevelled", "kiel"]
 
 
+NO_ERROR = {"error": 0.0, "error_alpha2": 0.0, "error_beta2": 0.0}
+
+
 def _total(alpha_deg=0.0, beta_deg=0.0, throttle=0.0, **settings):
     port = total_port(TotalPortSettings(**settings))
     return port(P_TOTAL, P_STATIC, 0.1, radians(alpha_deg), radians(beta_deg), throttle)
@@ -22,14 +25,16 @@ def _total(alpha_deg=0.0, beta_deg=0.0, throttle=0.0, **settings):
 
 def _error(alpha_deg=0.0, beta_deg=0.0, throttle=0.0, mach=0.0, **settings):
     """Position error in shares of the free impact pressure."""
-    port = static_port(StaticPortSettings(**settings))
+    port = static_port(StaticPortSettings(**(NO_ERROR | settings)))
     return (port(P_TOTAL, P_STATIC, mach, radians(alpha_deg), radians(beta_deg), throttle) - P_STATIC) / Q
 
 
 def test_ports_without_errors_are_none():
-    assert total_port(TotalPortSettings()) is None
-    assert static_port(StaticPortSettings()) is None
-    assert static_port(StaticPortSettings(slipstream=1.0)) is None  # it scales the position error: there is none
+    assert total_port(TotalPortSettings(probe="ideal")) is None
+    assert static_port(StaticPortSettings(**NO_ERROR)) is None
+    assert (
+        static_port(StaticPortSettings(**NO_ERROR, slipstream=1.0)) is None
+    )  # it scales the position error: there is none
 
 
 @pytest.mark.parametrize(("probe", "limit"), [("plain", 20.0), ("bevelled", 28.0), ("kiel", 40.0)])
@@ -82,16 +87,23 @@ def test_position_error_term_by_term():
     place = {"alpha_deg": 8.0, "beta_deg": -6.0, "mach": 0.3}
     assert _error(error=0.05) == pytest.approx(0.05)
     assert _error(**place, error=0.05) == pytest.approx(0.05)
-    assert _error(**place, error_alpha=-0.5) == pytest.approx(-0.5 * alpha)
-    assert _error(**place, error_alpha2=-2.0) == pytest.approx(-2.0 * alpha**2)
-    assert _error(**place, error_beta2=-3.0) == pytest.approx(-3.0 * beta**2)
+    down, side = sin(alpha) * cos(beta), sin(beta)
+    assert _error(**place, error_alpha=-0.5) == pytest.approx(-0.5 * down)
+    assert _error(**place, error_alpha2=-2.0) == pytest.approx(-2.0 * down**2)
+    assert _error(**place, error_beta2=-3.0) == pytest.approx(-3.0 * side**2)
     assert _error(**place, error_mach2=0.2) == pytest.approx(0.2 * 0.09)
     everything = {"error": 0.05, "error_alpha": -0.5, "error_alpha2": -2.0, "error_beta2": -3.0, "error_mach2": 0.2}
     assert _error(**place, **everything) == pytest.approx(sum(_error(**place, **{k: v}) for k, v in everything.items()))
 
 
 def test_ring_of_holes_in_cross_flow():
-    """Potential flow around a tube with holes all around: -sin²α = -0.030 q at 10°; the quadratic term gives it."""
+    """Potential flow around a tube with holes all around: -sin²α = -0.030 q at 10°; the quadratic term gives it.
+
+    Across the tube it is the -1 of a cylinder, from whichever side, and never more.
+    """
+    assert _error(alpha_deg=90.0, error_alpha2=-1.0) == pytest.approx(-1.0)
+    assert _error(beta_deg=-90.0, error_beta2=-1.0) == pytest.approx(-1.0)
+    assert _error(alpha_deg=180.0, error_alpha2=-1.0) == pytest.approx(0.0, abs=1e-12)
     assert _error(alpha_deg=10.0, error_alpha2=-1.0) == pytest.approx(-0.030, abs=0.0006)
 
 

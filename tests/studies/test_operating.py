@@ -1,10 +1,13 @@
 """Operating curves: intervals against tables, counts against `step`, and what counts as a detection."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 from pandas.testing import assert_frame_equal
 
+from uavsim.onboard.flight_computer import FlightComputerSettings
 from uavsim.onboard.launch import KINDS, DetectorSettings, build
 from uavsim.scenario import load_scenario
 from uavsim.settings import SettingError
@@ -231,3 +234,40 @@ def test_a_cell_has_the_peak_noise_and_bump_that_it_says() -> None:
     table = compare([DetectorSettings(kind="cusum")], trials=20, seed=1, cells=[(15.0, 0.05, True), (5.0, 1.0, False)])
     assert table[["peak_g", "sigma_g", "bump"]].to_numpy().tolist() == [[15.0, 0.05, True], [5.0, 1.0, False]]
     assert table["crossing_median"].iloc[0] < table["crossing_median"].iloc[1]
+
+
+# -- the wing command ------------------------------------------------------------------------------------------------
+
+
+def test_wings_are_counted_beside_alarms() -> None:
+    """A detector that takes drops for launches opens no wings for them; one at 4.1 g does, once a run."""
+    touchy, low = (replace(HOLD, threshold=level) for level in (25.0, 30.0))
+    found = count([touchy, replace(low, window=0.04)], {"soft drops": 0.1, "centrifuge": 0.1}, seed=3)
+    assert found["soft drops"][0].alarms > found["soft drops"][0].commands == 0
+    assert found["centrifuge"][1].commands == 10
+    bounds = found["centrifuge"][1].commands_interval()
+    assert bounds[0] < found["centrifuge"][1].commands_per_hour < bounds[1]
+    assert found["centrifuge"][1].commands_per_hour == pytest.approx(60.0)
+
+
+def test_a_launch_opens_the_wings_after_its_end_and_a_knock_does_not() -> None:
+    """A push of 6 g for 0.3 s behind a knock, 1.5 s before, or 0.6 s before, when it is still deaf."""
+    t = np.arange(6000) / RATE
+    computer = FlightComputerSettings()
+    truth = LaunchTruth(onset=4.0, crossing=4.001, peak=60.0, end=4.3)
+    trials = []
+    for knock in (2.5, 3.4):
+        force = np.column_stack([np.full(t.size, 1.7), 0.0 * t, 0.0 * t])
+        force[(t >= knock) & (t < knock + 0.02), 0] += 60.0
+        force[(t >= 4.0) & (t < 4.3), 0] += 60.0
+        trials.append(force)
+    found = judge(HOLD, Trials(trials, np.zeros(2), np.full(2, RATE), (truth, truth)), RATE, computer)
+    assert found.early.tolist() == [True, True]
+    assert found.commanded.tolist() == [True, False]
+    late = FlightComputerSettings(rearm_delay=2.0)
+    found = judge(HOLD, Trials(trials, np.zeros(2), np.full(2, RATE), (truth, truth)), RATE, late)
+    assert found.commanded.tolist() == [False, False]
+    quick = FlightComputerSettings(speed_gain_min=0.5)
+    found = judge(HOLD, Trials(trials, np.zeros(2), np.full(2, RATE), (truth, truth)), RATE, quick)
+    assert found.on_rail.tolist() == [True, True]
+    assert not judge(HOLD, Trials(trials, np.zeros(2), np.full(2, RATE), (truth, truth)), RATE).commanded.any()

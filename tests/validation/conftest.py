@@ -22,6 +22,15 @@ def figure(request: pytest.FixtureRequest) -> Figure:
         found = f"{sample.min():.4g} … {np.median(sample):.4g} … {sample.max():.4g} {unit}".rstrip()
         line = f"{label}: {found} ({sample.size} flights; asked {low:g} … {high:g})"
         request.node.user_properties.append(("measured", f"{request.node.name}: {line}"))
+        asked = " … ".join("" if abs(bound) == np.inf else f"{bound:g}" for bound in (low, high)).strip()
+        kept = {
+            "check": request.node.name.removeprefix("test_").replace("_", " "),
+            "label": label,
+            "found": found,
+            "size": f"{sample.size}",
+            "asked": "–" if asked == "…" else asked,
+        }
+        request.node.user_properties.append(("figure", kept))
         assert np.isfinite(sample).all(), line
         assert np.all((sample >= low) & (sample <= high)), line
 

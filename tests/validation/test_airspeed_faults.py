@@ -16,11 +16,16 @@ Figure = Callable[..., None]
 FLIGHTS, SEED = 20, 7001
 
 
+def cases(*names: str, more: tuple[str, ...]) -> list[object]:
+    """Cases of a table, and those of its kind that only `make certify` flies."""
+    return [*names, *(pytest.param(name, marks=pytest.mark.certify) for name in more)]
+
+
 def flown(name: str, flights: int = FLIGHTS) -> list[FaultFlight]:
     return campaign(name, flights, first_seed=SEED, workers=2)
 
 
-@pytest.mark.parametrize("name", ["healthy-gusty", "healthy-climb", "healthy-speeds", "spikes"])
+@pytest.mark.parametrize("name", cases("healthy-gusty", "healthy-climb", "spikes", more=("healthy-speeds",)))
 def test_healthy_ports_are_not_flagged(name: str) -> None:
     """Nor does a spike in each fiftieth reading count as a fault."""
     found = flown(name)
@@ -28,7 +33,9 @@ def test_healthy_ports_are_not_flagged(name: str) -> None:
     assert all(f.outcome not in ("crashed", "diverged") for f in found)
 
 
-@pytest.mark.parametrize("name", ["blocked-gusts", "blocked-climb", "blocked-descent", "iced-climb", "stuck"])
+@pytest.mark.parametrize(
+    "name", cases("blocked-gusts", "blocked-climb", "iced-climb", more=("blocked-descent", "stuck"))
+)
 def test_a_blocked_total_port_is_flagged_within_2_s(name: str, figure: Figure) -> None:
     """In gusts of 1 m/s, or while climbing or descending at 2 m/s; no crash, and the error bar holds."""
     found = flown(name)
@@ -58,7 +65,7 @@ def test_a_port_that_is_free_again_is_taken_back(figure: Figure) -> None:
     figure("freed after 3 s: taken back after", [f.recovered - f.fault - 3.0 for f in found], "s", 0.0, 6.0)
 
 
-@pytest.mark.parametrize("name", ["static-climb", "static-gusts", "static-stuck"])
+@pytest.mark.parametrize("name", cases("static-climb", "static-gusts", more=("static-stuck",)))
 def test_a_static_port_is_flagged_and_not_the_other(name: str, figure: Figure) -> None:
     """At most two of 20 blame the total port first; it was 14 of 40 in a climb."""
     found = flown(name)

@@ -9,6 +9,7 @@ from uavsim.cli.common import LARGEST_SEED, Bar, NoPlots, Out, Overwrite, Plugin
 from uavsim.cli.printed import Json, document, remark
 
 if TYPE_CHECKING:
+    from uavsim.onboard.flight_computer import FlightComputerSettings
     from uavsim.onboard.launch import DetectorSettings
     from uavsim.scenario import Scenario
     from uavsim.studies.trials import Launches
@@ -38,8 +39,9 @@ def roc(
 ) -> None:
     """Draw launch detectors' operating curves.
 
-    How often each sees the launch, how late, and how often it cries wolf, at each level of its own, all of them on the
-    same signals; and the detectors as they are set in cells of peak, noise and bump.
+    How often each sees the launch, how late, and how often it cries wolf in each class of exposure, at each level of
+    its own, all of them on the same signals; how often the wings would open, once the flight computer has looked at the
+    speed gained; and the detectors as they are set in cells of peak, noise and bump. Says how long it takes.
 
     Example: uavsim roc --out output/roc
 
@@ -51,13 +53,14 @@ def roc(
     """
     from uavsim.onboard.launch import KINDS, DetectorSettings
     from uavsim.studies import operating, reach
+    from uavsim.studies.workers import threads
     from uavsim.views import documents, terminal
     from uavsim.views import operating as view
     from uavsim.views import operating_tables as tables
 
     plug_in(plugin)
     kinds = kinds_of(detectors)
-    base, launches, name = _launches(scenario, sigma)
+    base, launches, name, computer = _launches(scenario, sigma)
     settings = [_of_kind(base, kind) for kind in kinds]
     with user_input():
         compared = _with_default(settings, base)
@@ -72,6 +75,16 @@ def roc(
     with folder(out, f"roc-{seed}", overwrite=overwrite) as place:  # before anything is computed in vain
         if left_out := reach.told(asked, work, reach.why(plain)):
             remark(left_out, as_json=as_json)
+        elif wait := reach.patience(
+            reach.lasts(
+                work,
+                settings=sum(1 for one in settings for _ in operating.levels(one)),
+                compared=len(compared) * len(operating.CELLS),
+                rate=launches.rate,
+                threads=threads(workers),
+            )
+        ):
+            remark(wait, as_json=as_json)
         with Bar("trying launch detectors") as bar, user_input():
             found = operating.operate(
                 settings,
@@ -80,6 +93,7 @@ def roc(
                 trials=work.trials,
                 seed=seed,
                 name=name,
+                computer=computer,
                 workers=workers,
                 progress=lambda share: bar.show((SWEEP if cells else 1.0) * share),
             )
@@ -130,16 +144,22 @@ def kind_of(name: str, option: str) -> str:
     return found
 
 
-def _launches(source: str | None, sigma: float) -> "tuple[DetectorSettings, Launches, str]":
-    """Return settings to start from, where launches come from, and what they are called."""
+def _launches(source: str | None, sigma: float) -> "tuple[DetectorSettings, Launches, str, FlightComputerSettings]":
+    """Return settings to start from, where launches come from, what they are called, and what opens the wings."""
+    from uavsim.onboard.flight_computer import FlightComputerSettings
     from uavsim.onboard.launch import DetectorSettings
     from uavsim.studies.signals import LaunchSettings
     from uavsim.studies.trials import Drawn, Flown
 
     if source is None:
-        return DetectorSettings(), Drawn(LaunchSettings(sigma_g=sigma)), f"launches of 5-15 g, σ {sigma:g} g"
+        return (
+            DetectorSettings(),
+            Drawn(LaunchSettings(sigma_g=sigma)),
+            f"launches of 5-15 g, σ {sigma:g} g",
+            FlightComputerSettings(),
+        )
     scenario = load(source)
-    return scenario.detector, Flown(scenario), f"launches of {scenario.name}"
+    return scenario.detector, Flown(scenario), f"launches of {scenario.name}", scenario.flight_computer
 
 
 def load(source: str) -> "Scenario":

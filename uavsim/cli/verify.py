@@ -50,7 +50,7 @@ def verify(
     ] = 0.95,
     requirements: Annotated[
         str | None,
-        typer.Option("--requirements", metavar="FILE|small-uav", help="A pack, in place of the scenario's own."),
+        typer.Option("--requirements", metavar="FILE|NAME", help="A pack, in place of the scenario's own."),
     ] = None,
     sampling: Annotated[str, typer.Option("--sampling", help="random: no other draws can be tested.")] = "random",
     seed: Seed = None,
@@ -77,6 +77,8 @@ def verify(
     undecided.
 
     Example: uavsim verify dispersed --requirements small-uav --out output/verify
+
+    Example: uavsim verify catapult --requirements launch-detector
 
     Example: uavsim verify mine.toml --runs 2000 --confidence 0.9 --resume --out output/mine
     """

@@ -17,7 +17,7 @@ from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
 from uavsim.onboard.launch.guarded import STATE
 from uavsim.plugins import plugged_in
-from uavsim.score_keys import FLIGHT, INTEGRITY, PHASES, PRESSURE, PRESSURES, no_airspeed
+from uavsim.score_keys import FLIGHT, INSTALLATION, INTEGRITY, PHASES, PRESSURE, PRESSURES, no_airspeed
 
 LOT = 50_000  # readings that are plain numbers at once
 PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
@@ -131,6 +131,7 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
         },
         "pressure": {name: dict.fromkeys(PRESSURE) for name in PRESSURES},
         "flight": {**dict.fromkeys(FLIGHT), "duration": end - start},
+        "installation": dict.fromkeys(INSTALLATION),
         "requirements": [],
         "remarks": [],
         "recording": {

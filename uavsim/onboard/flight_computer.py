@@ -8,9 +8,10 @@ head, and turns detection into action:
                                     +--push over, no speed gained--> rearming --delay--> waiting   and height hold
 
 The end of the stroke is a short mean of f_x less its mean on the rail that stays below a level. Whether it was a launch
-tells the speed gained, the integral of the same since detection: a knock must not open the wings. The mean on the rail
-holds the accelerometer's offset, so no offset keeps the wings in. As far as the offset has been found on the rail
-(`uavsim.onboard.rail_offset`), it is taken off each reading first, for detector and estimator, too.
+tells the speed gained, the integral of the same since detection (`uavsim.onboard.stroke`): a knock must not open the
+wings. The mean on the rail holds the accelerometer's offset, so no offset keeps the wings in. As far as the offset has
+been found on the rail (`uavsim.onboard.rail_offset`), it is taken off each reading first, for detector and estimator,
+too.
 
 In flight the throttle holds the ESTIMATED airspeed and the pitch command the height by static pressure; pitch and roll
 themselves are stabilised inside the aircraft:
@@ -31,7 +32,6 @@ is still as far away as it was.
 Sees readings and time, never truth. Scalar, constant memory.
 """
 
-from collections import deque
 from dataclasses import dataclass
 from math import isnan, nan, radians
 from typing import Annotated, Any
@@ -40,15 +40,14 @@ from annotated_types import Interval
 
 from uavsim import airdata
 from uavsim.onboard.interface import Commands, Detector, Estimate, Estimator, News
-from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_FORCE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.rail_offset import RailOffset
 from uavsim.onboard.readiness import Readiness
 from uavsim.onboard.stamps import Stamps, jump
+from uavsim.onboard.stroke import LONGEST_STEP, Stroke
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, ISO 80000-3
-LONGEST_STEP = 0.02  # s; a gap between readings counts as no more than this in an integral
 MOST_EVENTS = 10_000  # that are kept, then the oldest go; a flight has some ten
-RAIL_BLOCK = 0.5  # s, over which the mean on the rail is taken; the block before the last one is used
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +129,11 @@ class FlightComputerSettings:
     rail_roll_deg: Annotated[float, Interval(ge=-180, le=180)] = 0.0
 
 
+def stroke_settings(settings: FlightComputerSettings) -> tuple[float, float, float]:
+    """Level m/s², mean s and hold s of the end of the stroke."""
+    return settings.stroke_end_level_g * STANDARD_GRAVITY, settings.stroke_end_mean, settings.stroke_end_hold
+
+
 class FlightComputer:
     """One aircraft's computer.
 
@@ -181,20 +185,12 @@ class FlightComputer:
         self._begun = nan
         self._offset = (0.0, 0.0, 0.0)
         self._axis = None if axis == "+x" else ("xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0)
-        self._recent: deque[float] = deque(maxlen=max(1, round(settings.stroke_end_mean * accelerometer_rate)))
-        self._level = settings.stroke_end_level_g * STANDARD_GRAVITY
+        self._stroke = Stroke(*stroke_settings(settings), accelerometer_rate)
         self._level_pitch = radians(settings.level_pitch_deg)
         self._lowest_pitch = 2.0 * self._level_pitch - radians(settings.climb_pitch_deg)
-        self._block_start: float | None = None
-        self._block_sum, self._block_count = 0.0, 0
-        self._last_block: float | None = None
-        self._rail_mean = 0.0
         self._t = nan
         self._stamps = Stamps(jump(accelerometer_rate))
         self._longest = self._stamps.longest
-        self._last = 0.0
-        self._speed_gain = 0.0
-        self._quiet_since: float | None = None
         self._next_action = 0.0
         self._reference_pressure: float | None = None
         self._throttle_integral = settings.throttle_level
@@ -228,7 +224,7 @@ class FlightComputer:
                 self._look(t)
         along = fx if self._axis is None else self._axis[1] * (fx, fy, fz)[self._axis[0]]
         if state == "waiting":
-            self._average_rail(t, along)
+            self._stroke.rest(t, along)
             if self.detector.step(t, fx, fy, fz):
                 self._detected(t)
         elif state == "stroke":
@@ -241,11 +237,7 @@ class FlightComputer:
         if isnan(step):
             return
         self._next_action += step
-        self._last += step
-        if self._block_start is not None:
-            self._block_start += step
-        if self._quiet_since is not None:
-            self._quiet_since += step
+        self._stroke.step_of_the_clock(step)
 
     def air_data(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
@@ -297,20 +289,6 @@ class FlightComputer:
 
     # -- launch ------------------------------------------------------------------------------------------------------
 
-    def _average_rail(self, t: float, fx: float) -> None:
-        """Block means of f_x on the rail; the one before the last holds nothing of a stroke that has just begun."""
-        if not -MOST_FORCE < fx < MOST_FORCE:
-            return
-        if self._block_start is None:
-            self._block_start = t
-        elif t - self._block_start >= RAIL_BLOCK and self._block_count:
-            mean = self._block_sum / self._block_count
-            self._rail_mean = mean if self._last_block is None else self._last_block
-            self._last_block = mean
-            self._block_start, self._block_sum, self._block_count = t, 0.0, 0
-        self._block_sum += fx
-        self._block_count += 1
-
     def _rest(self, t: float, fx: float, fy: float, fz: float) -> None:
         """Look for the offset in a reading as it came; what has been found is taken off from here on."""
         rail = self._rail
@@ -330,31 +308,18 @@ class FlightComputer:
         if self._rail is not None and self._rail.found:
             self.estimator.rested(self._rail.offset, self._rail.sd)
         self.state = "stroke"
-        self._last = t
-        self._speed_gain = 0.0
-        self._quiet_since = None
-        self._recent.clear()
+        self._stroke.begin(t)
         self.estimator.launched(t)
 
-    def _follow_stroke(self, t: float, fx: float) -> None:
-        if not -MOST_FORCE < fx < MOST_FORCE:
-            return
-        above = fx - self._rail_mean
-        self._speed_gain += above * min(t - self._last, LONGEST_STEP)
-        self._last = t
-        recent = self._recent
-        recent.append(above)
-        if len(recent) < (recent.maxlen or 1) or sum(recent) >= self._level * len(recent):
-            self._quiet_since = None
-        elif self._quiet_since is None:
-            self._quiet_since = t
-        elif t - self._quiet_since >= self.settings.stroke_end_hold:
+    def _follow_stroke(self, t: float, f: float) -> None:
+        if self._stroke.follow(t, f):
             self._stroke_over(t)
 
     def _stroke_over(self, t: float) -> None:
         s = self.settings
-        launched = self._speed_gain >= s.speed_gain_min
-        self._note(t, "stroke_end" if launched else "not_a_launch", speed_gain=self._speed_gain)
+        gained = self._stroke.speed_gain
+        launched = gained >= s.speed_gain_min
+        self._note(t, "stroke_end" if launched else "not_a_launch", speed_gain=gained)
         if launched:
             self.state, self._next_action = "coasting", t + s.wing_delay
             self._command(engaged=1.0)
@@ -380,7 +345,7 @@ class FlightComputer:
                 self._readiness.forget()
             self._begun, self._doubts = nan, None
             self.detector.reset()
-            self._block_start, self._block_sum, self._block_count = None, 0.0, 0
+            self._stroke.rest_again()
             if self._rail is not None:
                 self._rail.forget()
             self.state = "waiting"

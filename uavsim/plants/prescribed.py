@@ -94,6 +94,12 @@ class PrescribedPlant:
         mach, alpha, beta, throttle = (values[k] for values in self._flow)
         return self._total[k], self._static[k], self._temperature[k], mach, alpha, beta, throttle
 
+    def flow_at(self, time: float) -> tuple[float, float, float, float, float, float, float]:
+        """As `flow`, at any recorded `time`, s: pressures and temperature linear within a step, the rest nearest."""
+        k = min(round(time * self._rate), self.k)
+        mach, alpha, beta, throttle = (values[k] for values in self._flow)
+        return *self.air(time), mach, alpha, beta, throttle
+
     def truth(self) -> dict[str, Array]:
         """Columns of the truth up to this step."""
         return {name: np.array(values[: self.k + 1]) for name, values in self._columns.items()}

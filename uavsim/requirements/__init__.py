@@ -7,7 +7,7 @@
     p50, p95, pQ    minimum | maximum                           quantile of the number over flights
     mean            minimum | maximum                           mean of the number over flights
     rate_per_hour   equals | nothing; minimum | maximum;        events an hour of exposure: flights that end as
-                    exposure                                    `equals`, or a count of the score summed
+                    exposure                                    `equals`, or a count summed
 
 A single flight is judged by what asks each flight, `every`; the others are judged by `uavsim verify`.
 
@@ -22,6 +22,10 @@ counts as one event, unless it has no exposure.
 * armed: min(`launch.release_time`, `flight.duration`), from the first sample that the detector sees to the release.
   It is the time in which a detection counts among `launch.false_detections`.
 * flight: `flight.duration` − `launch.true_time`, from the true launch to the end of the record; 0 without a launch.
+* handling, vibration, soft drops, held load: ten minutes of disturbances without a launch beside each flight, read by
+  its detector and flight computer (`uavsim.studies.campaign.exposures`). What they count: `launch.false_detections` of
+  the detector alone, and `launch.false_wing_commands`, which is no number of the score: on the rail of a flight that
+  lasts some seconds there is none, and one that opens its wings there ends as `false_launch`.
 """
 
 import re
@@ -36,15 +40,19 @@ from uavsim import settings
 from uavsim.score_keys import NUMBERS, Outcome
 from uavsim.settings import SettingError
 
-Exposure = Literal["armed", "flight"]
+Exposure = Literal["armed", "flight", "handling", "vibration", "soft drops", "held load"]
 
 PACKAGED = Path(__file__).resolve().parent
 OUTCOME = "outcome"  # the one key of the score that is no number and may be asked for
-COUNTS = (  # numbers of events, which a rate may be of
-    *("launch.false_detections", "airspeed.flags", "airspeed.false_flags", "airspeed.losses", "airspeed.hazard"),
-)
+WINGS = "launch.false_wing_commands"  # without a launch; counted in disturbances only
+OF_FLIGHT = ("airspeed.flags", "airspeed.false_flags", "airspeed.losses", "airspeed.hazard")
+COUNTS = ("launch.false_detections", WINGS, *OF_FLIGHT)  # numbers of events, which a rate may be of
 FLOWN = ("armed", "flight")  # exposures of a flight itself
-ALLOWED = {OUTCOME: FLOWN, "launch.false_detections": ("armed",), **dict.fromkeys(COUNTS[1:], ("flight",))}
+DISTURBED = ("handling", "vibration", "soft drops", "held load")  # those of disturbances beside it
+ALLOWED = {
+    **{OUTCOME: FLOWN, "launch.false_detections": ("armed", *DISTURBED), WINGS: DISTURBED},
+    **dict.fromkeys(OF_FLIGHT, ("flight",)),
+}
 """Exposures in which something can happen."""
 STATISTICS = ("every", "probability", "p50", "p95", "p99", "mean", "rate_per_hour")
 QUANTILE = re.compile(r"p([0-9]{1,2}(?:\.[0-9]{1,3})?)")
@@ -77,7 +85,8 @@ class Requirement:
     at_least, at_most
         Bounds on the event's probability.
     exposure
-        Hours that a rate is over: `armed`, until the release, or `flight`, after the true launch.
+        Hours that a rate is over: `armed`, until the release; `flight`, after the true launch; or disturbances beside
+        each flight: `handling`, `vibration`, `soft drops`, `held load`.
     """
 
     key: str
@@ -119,13 +128,24 @@ class Requirement:
             return self.at_most if self.at_least is None else self.at_least
         return self.minimum if self.maximum is None else self.maximum
 
+    @property
+    def disturbed(self) -> bool:
+        """Whether it is asked of disturbances beside the flights, not of the flights."""
+        return self.exposure in DISTURBED
+
+    @property
+    def column(self) -> str:
+        """Where a row of many flights has it."""
+        return f"{self.key}.{self.exposure}" if self.disturbed else self.key
+
     def __str__(self) -> str:
         """As people write it."""
         sign = "≤" if self.is_upper else "≥"
         if self.kind == "probability":
             return f"P({self.event}) {sign} {self.bound:g}"
         if self.kind == "rate_per_hour":
-            return f"{self.event} {sign} {self.bound:g} per {self.exposure} hour"
+            per = f"hour of {self.exposure}" if self.disturbed else f"{self.exposure} hour"
+            return f"{self.event} {sign} {self.bound:g} per {per}"
         if self.kind == "every":
             return f"{self.event}, every flight"
         return f"{self.statistic} of {self.key} {sign} {self.bound:g}"

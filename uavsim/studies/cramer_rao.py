@@ -198,7 +198,8 @@ class AirspeedBound:
         self._courses, self._schedule, self._noise = courses, schedule, noise
         self._aided = with_offset(settings.aided, noise.accelerometer_offset_sd)
         self._gas = GAS_CONSTANT_DRY_AIR * courses.temperature
-        self._share = 0.5 * noise.temperature_sd / courses.temperature
+        # temperature and position error are off by the same all the time: no reading tells
+        self._share = 0.5 * float(np.hypot(noise.temperature_sd / courses.temperature, noise.head.position_sd))
         initial = covariance_at_rest(
             speed_sd=settings.wind_sd if start.speed_sd is None else start.speed_sd,
             bias_sd=self._aided.bias_sd,

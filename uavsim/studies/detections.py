@@ -19,6 +19,8 @@ from uavsim.onboard.plausible import MOST_FORCE
 
 Indices = NDArray[np.int64]
 
+FIRST_BLOCK = 4096  # samples that are looked at before more are
+
 
 class BatchDetector:
     """A detector over arrays; decisions are those of `step` at the times k / rate, each alarm followed by `reset`.
@@ -94,6 +96,32 @@ class BatchDetector:
         self.reset()
         return np.array(found, np.int64)
 
+    def read(self, force: Forces) -> Forces:
+        """What the detector reads of a record, contiguous, for `next_alarm`; see `alarms` for the shape."""
+        return self._read(force)
+
+    def next_alarm(self, read: Forces, start: int, rate: float) -> int:
+        """Number of the sample of the first alarm of a record by a detector that is new at sample `start`; -1: none.
+
+        Parameters
+        ----------
+        read : ndarray
+            What `read` gave of the record.
+        start : int
+            Times are those of the record: sample k at k / rate.
+        rate : float
+            Samples a second that the clock really gave, Hz.
+        """
+        x, y = np.array(self._loop.x, np.float64), np.array(self._loop.y, np.int64)
+        y[0] = start
+        out, size, end = np.empty(1, np.int64), FIRST_BLOCK, read.shape[-1]
+        while start < end:  # in blocks that grow: rows are copied, and an alarm is often near
+            block = np.ascontiguousarray(read[..., start : start + size])
+            if self._run(block, start, rate, self._loop.p, self._loop.q, x, y, out):
+                return int(out[0])
+            start, size = start + size, 2 * size
+        return -1
+
     def _take(self, force: Forces, most: int, rate: float) -> Indices:
         out = np.empty(max(1, most), np.int64)
         count = self._run(self._read(force), self._k, rate, self._loop.p, self._loop.q, self._x, self._y, out)
@@ -136,10 +164,10 @@ def loop_of(detector: Any) -> tuple[Loop, Callable[..., int]]:
 
 
 def stepped(detector: Detector) -> Callable[..., int]:
-    """Return what steps a detector through arrays; its state is its own, and a record that begins at 0 resets it."""
+    """Return what steps a detector through arrays; its state is its own, the sample at which it begins resets it."""
 
-    def run(f: Forces, k0: int, rate: float, _p: object, _q: object, _x: object, _y: object, out: Indices) -> int:
-        if k0 == 0:
+    def run(f: Forces, k0: int, rate: float, _p: object, _q: object, _x: object, y: Indices, out: Indices) -> int:
+        if k0 == y[0]:
             detector.reset()
         alarms = 0
         for k, (fx, fy, fz) in enumerate(f.T.tolist(), k0):

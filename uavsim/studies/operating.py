@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uavsim.onboard.flight_computer import FlightComputerSettings
 from uavsim.onboard.launch import KINDS, DetectorSettings
 from uavsim.onboard.launch.kinds import OPTIONS, Level
 from uavsim.onboard.launch.settings import get, kind_of
 from uavsim.onboard.launch.settings import with_key as changed_key
 from uavsim.plugins import check_options
 from uavsim.settings import SettingError, read
-from uavsim.studies.false_alarms import DISTURBANCES, FalseAlarms, count
+from uavsim.studies.false_alarms import COMPUTER, DISTURBANCES, FalseAlarms, count
 from uavsim.studies.intervals import share_interval
 from uavsim.studies.signals import LaunchSettings
 from uavsim.studies.trials import Drawn, Launches, Trials, Verdicts, join, judge
@@ -110,8 +111,10 @@ class Operating:
         A row a detector and level: `detector`, `key` and `unit` of the level (empty: it has none), `level` (NaN),
         `factor` (1: as set), `trials`, `detected`, `early`
         (false alarms before the onset), `pd`, `pd_low`, `pd_high`; latencies `crossing_median`, `crossing_p95`,
-        `onset_median`, `onset_p95`, s; and for each class of disturbances `CLASS.hours`, `CLASS.alarms`,
-        `CLASS.per_hour`, `CLASS.low`, `CLASS.high`.
+        `onset_median`, `onset_p95`, s; launches after which the wings open `commanded`, `pc`, `pc_low`, `pc_high`,
+        and before whose end they do `on_rail`; and for each class of disturbances `CLASS.hours`, `CLASS.alarms`,
+        `CLASS.per_hour`, `CLASS.low`, `CLASS.high`, and `CLASS.commands`, `CLASS.commands_per_hour`,
+        `CLASS.commands_low`, `CLASS.commands_high`: false wing commands of the flight computer behind the detector.
     seed, launches
         What was drawn, and from what, in words.
     rate
@@ -136,6 +139,7 @@ def operate(
     trials: int,
     seed: int,
     name: str = "",
+    computer: FlightComputerSettings = COMPUTER,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Operating:
@@ -155,6 +159,8 @@ def operate(
         Of launches and disturbances.
     name
         Of the launches, for people.
+    computer
+        Of the aircraft behind each detector.
     workers, progress
         As of `uavsim.studies.workers.spread`; the result does not depend on them.
 
@@ -172,13 +178,20 @@ def operate(
     report = progress or (lambda _: None)
     times = {kind: share * hours for kind, share in SHARES.items()}
     alarms = count(
-        settings, times, seed=seed, rate=launches.rate, workers=workers, progress=lambda share: report(0.6 * share)
+        settings,
+        times,
+        seed=seed,
+        rate=launches.rate,
+        computer=computer,
+        workers=workers,
+        progress=lambda share: report(0.6 * share),
     )
     verdicts = tried(
         settings,
         launches,
         seed=seed,
         trials=trials,
+        computer=computer,
         workers=workers,
         progress=lambda share: report(0.6 + 0.4 * share),
     )
@@ -187,7 +200,7 @@ def operate(
         swept_along = level_of(own)
         named = ("", "") if swept_along is None else (swept_along.key, swept_along.unit)
         row = {"detector": own.kind, "key": named[0], "unit": named[1], "level": level(chosen), "factor": factor}
-        row |= scored(verdicts[i])
+        row |= scored(verdicts[i]) | opened(verdicts[i])
         for kind in DISTURBANCES:
             row |= {f"{kind}.{key}": value for key, value in rated(alarms[kind][i]).items()}
         rows.append(row)
@@ -201,14 +214,18 @@ def tried(
     seed: int,
     trials: int,
     first: int = 0,
+    computer: FlightComputerSettings | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> list[Verdicts]:
-    """Try detectors on the same launches, `first` … `first` + `trials` - 1 of a seed; those of each detector."""
+    """Try detectors on the same launches, `first` … `first` + `trials` - 1 of a seed; those of each detector.
+
+    With a flight computer what it makes of them is judged, too.
+    """
 
     def lot(begin: int) -> list[Verdicts]:
         read_: Trials = launches.read(seed, begin, min(LOT, first + trials - begin))
-        return [judge(settings, read_, launches.rate) for settings in detectors]
+        return [judge(settings, read_, launches.rate, computer) for settings in detectors]
 
     fly = getattr(launches, "fly", None)
     if fly is not None:
@@ -231,10 +248,21 @@ def scored(verdicts: Verdicts) -> dict[str, float | int]:
     return row
 
 
+def opened(verdicts: Verdicts) -> dict[str, float | int]:
+    """Launches after which the wings open, with the band of their share, and those on whose rail they do."""
+    trials, commanded = verdicts.commanded.size, int(verdicts.commanded.sum())
+    low, high = share_interval(commanded, trials)
+    row = {"commanded": commanded, "on_rail": int(verdicts.on_rail.sum())}
+    return row | {"pc": commanded / trials, "pc_low": low, "pc_high": high}
+
+
 def rated(found: FalseAlarms) -> dict[str, float | int]:
-    """Alarms of a detector in a class of disturbances, with the band of their rate, 1/h."""
+    """Alarms of a detector in a class of disturbances and false wing commands, with the bands of their rates, 1/h."""
     low, high = found.interval()
-    return {"hours": found.hours, "alarms": found.alarms, "per_hour": found.per_hour, "low": low, "high": high}
+    row = {"hours": found.hours, "alarms": found.alarms, "per_hour": found.per_hour, "low": low, "high": high}
+    low, high = found.commands_interval()
+    row |= {"commands": found.commands, "commands_per_hour": found.commands_per_hour}
+    return row | {"commands_low": low, "commands_high": high}
 
 
 # -- comparison ------------------------------------------------------------------------------------------------------

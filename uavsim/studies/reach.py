@@ -1,8 +1,9 @@
-"""What is within reach of detectors that run in plain Python, so that `roc` ends in about ten minutes, not in hours.
+"""How long `roc` and `tune` take, and what is within reach of detectors that run in plain Python.
 
-Those are detectors without a compiled loop, and all of them where numba's JIT is off. Plain Python takes `COST` for a
-sample and detector, a hundred times and more what a compiled loop takes. Hours and launches beyond `MOST` and
-`MOST_TRIED` are left out, which is told. What is left gives what it gives with a loop.
+In plain Python run detectors without a compiled loop, and all of them where numba's JIT is off. It takes `COST` for a
+sample and detector, a hundred times and more what a compiled loop takes. So that `roc` ends in about ten minutes, hours
+and launches beyond `MOST` and `MOST_TRIED` are then left out, which is told. What is left gives what it gives with a
+loop.
 """
 
 from collections.abc import Iterable
@@ -13,6 +14,7 @@ from uavsim.compiled import jit
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.studies.detections import has_loop
 from uavsim.studies.false_alarms import PIECE, PIECES_AN_HOUR
+from uavsim.studies.operating import SHARES
 
 COST = 0.4e-6  # s a sample and detector of a loop in plain Python, the mean over our kinds on one core of 2024
 STEPPED = 1.2e-6  # s of a detector that is stepped: what ours take, 0.3 to 1.5, and their guard
@@ -20,6 +22,10 @@ MOST = 1.0e9  # samples times detectors of disturbances, 7 minutes
 MOST_TRIED = 1.5e8  # samples times detectors of launches, a minute, and as many in the cells
 LAUNCH = 1.9  # s of a launch until it is decided; most of it is the wait before
 COUNTED = 40.0  # settings that `tune` counts over all its hours, about
+DRAWS = 12.0  # times that `tune` draws its hours of a class, about
+COMPILED = 7e-9  # s a sample and detector of a compiled loop and the flight computer behind it, on one core of 2024
+DRAWN = 8e-8  # s a sample of disturbances that is drawn, the mean over the classes
+PATIENCE = 10.0  # s, from which on it is said beforehand how long it takes
 OFF = "numba's JIT is off (NUMBA_DISABLE_JIT)"
 
 
@@ -73,6 +79,38 @@ def within_reach(asked: Work, *, detectors: int, compared: int, rate: float) -> 
         min(asked.trials, max(1, int(tried / max(1, detectors)))),
         min(asked.cells, max(1, int(tried / max(1, compared)))),
     )
+
+
+def lasts(work: Work, *, settings: int, compared: int, rate: float, threads: int) -> float:
+    """Time that `roc` takes with compiled loops, s, by what it costs on one core of 2024.
+
+    Parameters
+    ----------
+    work
+        What it does.
+    settings, compared
+        Settings in the sweep, and settings times cells in the comparison.
+    rate
+        Samples a second, Hz.
+    threads
+        How many work.
+    """
+    samples = sum(SHARES.values()) * work.hours * 3600.0 * rate
+    launches = LAUNCH * rate * (work.trials * settings + work.cells * compared)
+    return (samples * (DRAWN + COMPILED * settings) + launches * COMPILED) / threads
+
+
+def tuning_lasts(hours: float, rate: float, threads: int) -> float:
+    """Time that `tune` takes with compiled loops for the hours that its budget needs, s."""
+    samples = hours * 3600.0 * rate
+    return samples * (DRAWS * DRAWN + COUNTED * COMPILED) / threads
+
+
+def patience(seconds: float) -> str:
+    """Say how long it takes; empty where nobody has to wait."""
+    if seconds < PATIENCE:
+        return ""
+    return f"this takes about {seconds:.0f} s" if seconds < 100.0 else f"this takes about {seconds / 60.0:.0f} min"
 
 
 def told(asked: Work, done: Work, reason: str) -> str:

@@ -6,6 +6,10 @@ A trial is a recording with one launch in it; a detector begins with it and its 
     until 0.3 s after the stroke's end     a detection; its latency counts from the onset, and from the 4.5 g crossing
     later, or never                        a miss
 
+With a flight computer behind it, what opens the wings is judged too (`uavsim.studies.wing_commands`): a bump that was
+no launch is forgotten after its delay, and a launch counts that was followed to its end with enough speed gained. The
+wings are commanded a delay after that: before the stroke's end that is on the rail, and the launch is lost.
+
 `Drawn` draws from the distributions of `uavsim.studies.signals`. `Flown` flies a scenario: as long as nothing is
 commanded the truth does not depend on what the sensor reads, so one flight of JSBSim serves any number of sensors. It
 is exact, not an approximation: the plant is flown without a command, as before every detection.
@@ -14,7 +18,7 @@ is exact, not an approximation: the plant is flown without a command, as before 
 import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from math import inf
 from typing import Protocol
@@ -26,10 +30,12 @@ from sensors import Accelerometer, Streams, Vibration
 from uavsim.cosim import draw, make_plant
 from uavsim.dispersions import resolved
 from uavsim.judged import Judged
+from uavsim.onboard.flight_computer import FlightComputerSettings
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.scenario import Scenario
 from uavsim.studies.detections import BatchDetector
 from uavsim.studies.signals import LaunchSettings, LaunchTruth, record_launches
+from uavsim.studies.wing_commands import commands
 from uavsim.truth import STANDARD_GRAVITY as G0
 
 Array = NDArray[np.float64]
@@ -236,11 +242,25 @@ def _feel(flight: _Flight, streams: Streams) -> tuple[Array, float, float, Launc
 
 @dataclass(frozen=True, slots=True)
 class Verdicts:
-    """What a detector made of some trials, each shape (trials,): latencies in s, NaN where there is none."""
+    """What a detector made of some trials, each shape (trials,): latencies in s, NaN where there is none.
+
+    Attributes
+    ----------
+    early
+        Whether its first alarm was before the onset.
+    since_onset, since_crossing
+        Latencies of those that were detected, s.
+    commanded
+        Whether the flight computer behind it opens the wings after the stroke; all False without one.
+    on_rail
+        Whether it opens them before.
+    """
 
     early: NDArray[np.bool_]
     since_onset: Array
     since_crossing: Array
+    commanded: NDArray[np.bool_]
+    on_rail: NDArray[np.bool_]
 
     @property
     def detected(self) -> NDArray[np.bool_]:
@@ -248,7 +268,9 @@ class Verdicts:
         return np.isfinite(self.since_onset)
 
 
-def judge(settings: DetectorSettings, trials: Trials, rate: float) -> Verdicts:
+def judge(
+    settings: DetectorSettings, trials: Trials, rate: float, computer: FlightComputerSettings | None = None
+) -> Verdicts:
     """Try a detector.
 
     Parameters
@@ -259,23 +281,31 @@ def judge(settings: DetectorSettings, trials: Trials, rate: float) -> Verdicts:
         What it is tried on.
     rate
         Nominal samples a second for which it is built, Hz.
+    computer
+        Of the aircraft behind it; None: the wings are not looked at.
 
     Raises
     ------
     ValueError
         Settings that do not fit together.
     """
-    found = BatchDetector(settings, rate).first(trials.force, trials.rate)
+    detector = BatchDetector(settings, rate)
+    found = detector.first(trials.force, trials.rate)
     alarm = np.where(found >= 0, trials.start + found / trials.rate, inf)
     onset = np.array([truth.onset for truth in trials.truths])
     end = np.array([truth.end for truth in trials.truths])
     crossing = np.array([np.nan if truth.crossing is None else truth.crossing for truth in trials.truths])
     early = alarm < onset
     seen = np.where(~early & (alarm <= end + GRACE), alarm, np.nan)
-    return Verdicts(early, seen - onset, seen - crossing)
+    opened = np.full(len(end), inf)
+    if computer is not None:
+        for i, first in enumerate(found.tolist()):
+            over = commands(detector, trials.force[i], computer, first=first, rate=float(trials.rate[i]))
+            if over.size:
+                opened[i] = trials.start[i] + over[0] / trials.rate[i] + computer.wing_delay
+    return Verdicts(early, seen - onset, seen - crossing, np.isfinite(opened) & (opened >= end), opened < end)
 
 
 def join(parts: Sequence[Verdicts]) -> Verdicts:
     """Put verdicts on several lots of trials together."""
-    names = ("early", "since_onset", "since_crossing")
-    return Verdicts(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+    return Verdicts(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Verdicts)))

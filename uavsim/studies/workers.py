@@ -13,6 +13,11 @@ Progress = Callable[[float], None]
 """Called with the share of the work that is done, 0 … 1."""
 
 
+def threads(workers: int | None) -> int:
+    """How many work; None: one a processor."""
+    return workers or os.cpu_count() or 1
+
+
 def spread(
     parts: Sequence[Callable[[], T]], *, workers: int | None = None, progress: Progress | None = None
 ) -> list[T]:
@@ -36,7 +41,7 @@ def spread(
 
     if not jit():  # threads of plain Python wait for each other, and keep an interrupt waiting
         return _one_by_one(parts, progress)
-    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+    with ThreadPoolExecutor(threads(workers)) as pool:
         waiting: list[Future[T]] = [pool.submit(part) for part in parts]
         try:
             for done, future in enumerate(as_completed(waiting), 1):

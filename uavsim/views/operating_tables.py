@@ -10,23 +10,33 @@ from uavsim.views.terminal import _console, _print, _table
 if TYPE_CHECKING:
     import pandas as pd
 
-CLASSES = {"vibration": "3 g rms", "soft drops": "soft drops", "centrifuge": "4.1 g"}
+CLASSES = {"mix": "handling", "vibration": "3 g rms", "soft drops": "drops", "centrifuge": "4.1 g"}
 
 
 def print_operating(found: Operating) -> None:
     """Print the detectors as they are set: a line each, with 95 % bands."""
     console = _console()
-    _print(console, f"\n{found.launches}, seed {found.seed}: as set, 95 % bands; delays after 4.5 g, ms\n")
-    table = _table(("", "detected", "95 %", "median", "p95", "too early"))
-    alarms = _table(("false alarms an hour", "mix", "95 %", *CLASSES.values()))
+    _print(
+        console,
+        f"\n{found.launches}, seed {found.seed}: as set, 95 % bands; delays after 4.5 g, ms;"
+        "\nwings: share of launches after which they open, for too little speed was gained in the others\n",
+    )
+    table = _table(("", "seen", "95 %", "median", "p95", "early", "wings"))
+    alarms = _table(("false alarms, 1/h", *CLASSES.values(), "worst ≤"))
+    wings = _table(("false wings, 1/h", *CLASSES.values(), "worst ≤"))
     for _, row in found.shipped().iterrows():
         name = str(row["detector"])
         band = f"{row['pd_low']:.4f}–{row['pd_high']:.4f}"
         delays = _ms(row["crossing_median"]), _ms(row["crossing_p95"])
-        table.add_row(name, f"{row['pd']:.4f}", band, *delays, f"{row['early']}")
-        band = f"{_rate(row['mix.low'])}–{_rate(row['mix.high'])}"
-        alarms.add_row(name, _rate(row["mix.per_hour"]), band, *(_rate(row[f"{kind}.per_hour"]) for kind in CLASSES))
-    _print(console, table, "", alarms, "")
+        table.add_row(name, f"{row['pd']:.4f}", band, *delays, f"{row['early']}", f"{row['pc']:.3f}")
+        for part, rate, high in ((alarms, "per_hour", "high"), (wings, "commands_per_hour", "commands_high")):
+            worst = max(CLASSES, key=lambda kind: row[f"{kind}.{high}"])
+            part.add_row(
+                name,
+                *(_rate(row[f"{kind}.{rate}"]) for kind in CLASSES),
+                f"{CLASSES[worst]}, {_rate(row[f'{worst}.{high}'])}",
+            )
+    _print(console, table, "", alarms, "", wings, "")
 
 
 def _ms(seconds: float) -> str:

@@ -1,5 +1,6 @@
 """Verdicts on rows made by hand: a set in which all is well is met, and each thing that is wrong is found."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from uavsim.score_keys import PHASES
 from uavsim.studies.certify import healthy, in_flight, offset
 from uavsim.studies.certify.verdict import Verdict
+from uavsim.views.certified import coverage, save_coverage
 
 SD = {"stroke": 0.5, "transition": 0.1, "cruise": 0.05}
 
@@ -46,6 +48,7 @@ def test_all_is_well() -> None:
     ({"outcome": "timeout"}, "all that are not refused"),
     ({"flags": 1, "flag_t": 9.0, "flag_channel": "total", "flag_kind": "frozen"}, "false flags"),
     ({"worst_ratio": 6.5}, "a valid airspeed off"),
+    ({"worst_ratio": 7.0, "wrong_for": 1.2}, "valid and more than 3 m/s wrong"),
     ({"ready": False}, "not ready though"),
 ])  # fmt: skip
 def test_one_flight_that_is_wrong_is_found(change: dict[str, Any], check: str) -> None:
@@ -69,6 +72,15 @@ def test_a_level_that_is_off_is_found(change: dict[str, Any], check: str) -> Non
     rows = [{**row, **change} if row["pressure"] == "bmp581" else row for row in all_well()]
     before = healthy.judge(all_well(), 1).to_dict()
     assert found(healthy.judge(rows, 1, before), check) is False
+
+
+def test_levels_are_drawn(tmp_path: Path) -> None:
+    levels = healthy.judge(all_well(), 1).to_dict()["tables"]["levels"]
+    panels = coverage(levels).axes
+    assert [panel.get_xlabel() for panel in panels] == list(PHASES)
+    assert panels[-1].get_yticklabels()[0].get_text().startswith("accelerometer adxl345 (")
+    save_coverage(levels, tmp_path / "coverage.png")
+    assert (tmp_path / "coverage.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_bar_that_grew_where_it_was_wrong_before_is_held_against_the_error() -> None:

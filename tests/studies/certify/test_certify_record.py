@@ -79,5 +79,6 @@ def test_a_block_is_made_of_its_verdict(tmp_path: Path) -> None:
     assert "| stroke | 0.1235 | – |" in made
     assert "old" not in made
     assert refreshed(made, tmp_path) == made
-    with pytest.raises(ValueError, match="offset"):
-        refreshed("<!-- certify: offset checks -->\n<!-- end -->", tmp_path)
+    assert "not been flown" in refreshed("<!-- certify: offset checks -->\n<!-- end -->", tmp_path)
+    with pytest.raises(ValueError, match="no table 'speeds'; there are checks, phases"):
+        refreshed("<!-- certify: healthy speeds -->\n<!-- end -->", tmp_path)

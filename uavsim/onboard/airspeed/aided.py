@@ -36,7 +36,7 @@ soon as the clocks of head and accelerometer agree.
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import replace
-from math import inf, nan, sqrt
+from math import hypot, inf, nan, sqrt
 
 from uavsim import airdata
 from uavsim.onboard.airspeed.air import SLOWEST, Air
@@ -87,6 +87,12 @@ PATIENCE = 1.0
 # Pa, standard deviation of the static pressure at the start, where none has been read (3 km of height) and where one
 # has. By hand: so wide that the first readings in the filter decide
 ANYWHERE, AROUND = 3e4, 1e3
+
+# s, and readings of the head, from the start on, by which it is judged whether the aircraft rests on its rail. By hand
+AT_FIRST, FIRST_ROWS = 0.05, 5
+IN_PUSH = 30.0  # m/s², mean force at the start of a replay that is a push: three times what any rest has. By hand
+STORM = 25.0  # m/s, a wind beyond which nobody launches: 12 Beaufort are 33
+UNLIKELY = 5.0  # standard deviations of the pair's difference beside it
 
 # -- steady flight -----------------------------------------------------------------------------------------------------
 
@@ -359,13 +365,16 @@ class AidedFilter(Estimator):
         self._gained.bound(MOST_FORCE)
         start = max(t - self._settings.aided.replay, self._gained.oldest, self._tare_end)
         start = min(start, t)
-        self.energy = self._begin(start)
         self._apart = False
         broken = self._rail.broken(t)
         self._gated = inf
-        self._start(start, t + PATIENCE, inf)
-        self._begin_stroke(t, start, broken)
-        self._begin_first_climb(start)
+        if not broken and self._aloft(start):
+            self._begin_aloft(start, t)
+        else:
+            self.energy = self._begin(start)
+            self._start(start, t + PATIENCE, inf)
+            self._begin_stroke(t, start, broken)
+            self._begin_first_climb(start)
         try:
             for row in self._rows:
                 if row[4] - self._total_age > start or row[5] - self._static_age > start:
@@ -384,6 +393,10 @@ class AidedFilter(Estimator):
             self._leave_rail()
         self._gained.bound(self._flight_force)
         self._unfolding.begin(t)
+        if self.flying:  # slow, it has to pitch up, and f_x is turned further from the path than b grants
+            turned = GRAVITY * self._angles.needed(self.energy.v, self._air.density)
+            self.energy.widen_bias(turned * turned)
+            self.ports.total.jump(self.time, turned * turned)
 
     def rearmed(self, t: float) -> None:
         """Go back to waiting: the launch was none."""
@@ -522,21 +535,61 @@ class AidedFilter(Estimator):
 
     def _begin_in_flight(self, t: float) -> None:
         """Begin anew at `t`, s: V by the next total pressure, both ports believed, climb and bias not known."""
-        aided, before = self._settings.aided, self.energy.p
+        self._begin_aloft(t - OLDEST, t)
+        self._apart = False
+        self.ports.tell(t, "airspeed_recovered", "both")
+
+    def _aloft(self, start: float) -> bool:
+        """Whether force or pressures at the start are not those of an aircraft that rests on its rail.
+
+        The force is in a push already, or the pair's difference is more than any wind, and what is not known of its
+        tare, can make. A launch that is told with no reading before it has the benefit of the doubt.
+        """
+        u, _ = self._gained.at(start)
+        if self._gained.newest - start > AT_FIRST:
+            pushed = (self._gained.at(start + AT_FIRST)[0] - u) / AT_FIRST
+        elif self._gained.newest > start:
+            pushed = (self._gained.at(self._gained.newest)[0] - u) / (self._gained.newest - start)
+        else:
+            pushed = 0.0
+        if pushed > IN_PUSH:
+            return True
+        first = [row for row in self._rows if row[4] - self._total_age > start - AT_FIRST][:FIRST_ROWS]
+        found = [row[1] - row[2] for row in first if row[1] == row[1] and row[2] == row[2]]
+        static = self._waiting.static.value
+        if not (found and LEAST_PRESSURE <= static <= MOST_PRESSURE):
+            return False
+        tare, variance = self._waiting.tare()
+        spread = sqrt(
+            (self._total_variance + self._static_variance) / len(found) + (variance or self._noise.difference_sd**2)
+        )
+        wind = hypot(STORM, self._wind.speed_declared)
+        excess = sum(found) / len(found) - tare
+        return excess > 0.5 * static / self._air.gas * wind * wind + UNLIKELY * spread
+
+    def _begin_aloft(self, start: float, t: float) -> None:
+        """Begin in flight, or in a push, at an instant, s: V by the next total pressure, climb and bias not known."""
+        aided, before = self._settings.aided, self._waiting.static.value
+        if not LEAST_PRESSURE <= before <= MOST_PRESSURE:
+            before = self.energy.p
+        self._tare, variance = self._waiting.tare()
+        self._plain_tare = self._tare
+        self._air.begin(self._waiting.temperature)
         core = self._core(
             speed=(0.0, self._settings.wind_sd),
             rest=(0.0, 0.0),
             static=(before if THINNEST < before < THICKEST else airdata.STANDARD_PRESSURE, ANYWHERE),
-            difference_sd=sqrt(self._waiting.tare()[1]),
+            difference_sd=sqrt(variance) if variance > 0.0 else self._noise.difference_sd,
         )
         core.leave_rail(0.5 * aided.slope_rate**2 * aided.slope_time)
         self._wind.forget()
         self._angles.forget()
-        self.energy, self._onset.wind = core, 0.0
+        self.energy = core
+        self._air.ground = core.p
+        self._onset.know()
         self._unfolding.forget()
-        self._start(t - OLDEST, -inf, t + STEADY)
-        self._apart = False
-        self.ports.tell(t, "airspeed_recovered", "both")
+        self._rest.mean = 0.0
+        self._start(start, -inf, t + STEADY)
 
     def _core(
         self, speed: tuple[float, float], rest: tuple[float, float], static: tuple[float, float], difference_sd: float
@@ -721,11 +774,11 @@ class AidedFilter(Estimator):
             energy.widen_bias(size * size)
             ports.total.open_bias(self.time, size * size)
         elif to > shock.due:
-            kind = shock.judge(energy.b, energy.bb)
-            if kind == "offset":
-                ports.tell(self._t, "airspeed_fault", "accelerometer", kind)
-            elif kind == "felt":
-                ports.total.close_bias()
+            offset, moved = shock.judge(energy.b, energy.bb)
+            if offset:
+                ports.tell(self._t, "airspeed_fault", "accelerometer", "offset")
+            else:
+                ports.total.close_bias(moved * moved)
 
     def _advance(self, to: float) -> None:
         """Predict to a later time; an earlier one leaves the filter where it is."""
@@ -733,7 +786,7 @@ class AidedFilter(Estimator):
         if not dt > 0.0:
             return
         gained, variance = self._go(to, dt)
-        if self.ports.total.faulty:
+        if self.ports.total.faulty and self.ports.total.coasts:
             self.ports.total.carry(self.energy, dt, gained, variance, self._air.density)
         else:
             self.energy.predict(dt, gained, variance, self._air.density, self._force > self._on_rail)
@@ -757,7 +810,8 @@ class AidedFilter(Estimator):
             self._grown += grown
         variance = self._air.gust * (v if v > SLOWEST else SLOWEST) * dt
         if wind.on:
-            wind.advance(dt, variance, self.energy)
+            railed = self._force > self._on_rail
+            wind.advance(self.energy, dt, gained, variance, self._air.density, railed)
             if self._force > self._on_rail:
                 wind.pushed = True
             elif wind.pushed or to > self._onset.patience:
@@ -769,6 +823,8 @@ class AidedFilter(Estimator):
         if self.time < self._unfolding.end:
             variance += self._unfolding.variance(self.time, to)
         lift = self._lift = self._gained.lift()
+        if lift == lift and to > self._unfolding.end > -inf:  # the wings are out
+            self._angles.lift = lift
         if self.time > self._steady_from and lift == lift:
             turned, doubt = pulled(lift, v)
             gained -= turned * dt

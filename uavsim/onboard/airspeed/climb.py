@@ -25,6 +25,9 @@ CLIMB_SD, CLIMB_RATE = 3.0, 0.2
 # s for which a pull (`lift`) may be a turn's and no change of climb: in a level turn at 60° f_z says 1 g, and the climb
 # stays. By hand: as long as it takes to roll; tests/onboard/test_airspeed_manoeuvres.py holds the check
 TURNING = 1.0
+GUSTY = (
+    1.5  # m/s² more than `lift.STRAIGHT`, up to which it is a gust's or a gentle turn's, and f_z is believed. By hand
+)
 BIAS_SD, BIAS_RATE = 0.5, 0.05  # m/s² and (m/s²)/√s of a. By hand, as the rate above
 DOUBT = 0.03  # nats that a reading takes off, so that chance does not add up. By hand; docs/faults.md holds the check
 
@@ -98,7 +101,8 @@ class ClimbTest:
         r, noise = weight * dt, self._noise
         pull = lift - GRAVITY
         self._pull.add(lift, dt)
-        size = self._pull.size
+        size = self._pull.size - GUSTY
+        size = size if size > 0.0 else 0.0
         rate = CLIMB_RATE * CLIMB_RATE + size * size * TURNING
         self.c += (pull - self.a) * dt
         self.p -= r * self.c
@@ -115,7 +119,7 @@ class ClimbTest:
         spread = pp + noise
         innovation, still = reading - self.p, reading - self.held
         nis = innovation * innovation / spread
-        said = 0.5 * (nis - still * still / spread) - DOUBT - 2.0 * by_chance(noise / spread)
+        said = 0.5 * (nis - still * still / spread) - DOUBT - by_chance(noise / spread)
         evidence = self.evidence + (MOST if said > MOST else LEAST if said < LEAST else said)
         if not evidence > 0.0 and nis > SURPRISE:
             pp, pc, pa = pp + innovation * innovation, 0.0, 0.0

@@ -24,10 +24,6 @@ class Beside:
     of_d: float = 0.0
     of_k: float = 0.0
 
-    def advance(self, dt: float) -> None:
-        """Be told that the state has been predicted by so much, s: v has taken b and s."""
-        self.of_v -= dt * (self.of_b + self.of_s)
-
 
 SEVEN_R = 7.0 * GAS_CONSTANT_DRY_AIR  # J/(kg·K): 2·c_p, v²/(7·R·T) = (γ − 1)/2·M²
 
@@ -162,6 +158,22 @@ class EnergyFilter(EnergyModel):
         gc = hv * c.of_v + hp * c.of_p + c.of_d + pushed * c.of_k + hc * c.variance
         spread = hv * gv + hp * gp + gd + pushed * gk + hc * gc + variance
         return self._correct_two(above - self.d - pushed * self.k, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
+
+    def predict_beside(
+        self, beside: Beside, dt: float, gained: float, variance: float, density: float, railed: bool
+    ) -> None:
+        """Advance a quantity's covariances with the state, before `predict`, whose arguments these are.
+
+        The quantity stays, but for a variance of its own, m²/s², as large as that of v.
+        """
+        c = beside
+        slope, steep = self.s, -density * (self.v + 0.5 * (gained - dt * (self.b + self.s))) * dt
+        c.of_p += -density * slope * dt * c.of_v + steep * c.of_s
+        c.of_v -= dt * (c.of_b + c.of_s)
+        if not railed:
+            c.of_b *= 1.0 - dt / self._bias_time
+            c.of_s *= 1.0 - dt / self._slope_time
+        c.variance += variance
 
     def static_of_two(self, reading: float, variance: float, ahead: float, slope: float, beside: Beside) -> float:
         """Take a static pressure as `static`; its derivative by the quantity beside the state is `slope`."""

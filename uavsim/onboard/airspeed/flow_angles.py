@@ -13,6 +13,7 @@ for its mean and √2 times it for its standard deviation. To it comes y₀² e^
 
 from math import exp, hypot
 
+from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.settings import AidedSettings
 
 SWING = (
@@ -25,6 +26,7 @@ STEADY_SD = 0.01  # rad, of β beside turbulence: an aircraft that is not trimme
 LEAST_SPEED = 10.0  # m/s, below which no wing flies
 SWUNG = 0.67  # share of the swing's square that is not known: it is anywhere between 0 and twice its mean. By hand
 SQUARE = 1.41  # standard deviation of the square of a normal number of mean 0, over its variance
+USUAL = 0.06  # rad, of α that `bias_sd` covers: that of fw8 at 24 m/s. By hand
 STEEPEST = 0.35  # rad, beyond which no wing lifts as the curve says
 
 
@@ -69,6 +71,13 @@ class FlowAngles:
             else:
                 self._side2 = 0.0
         return mean + swing, hypot(SQUARE * mean, SWUNG * swing)
+
+    def needed(self, v: float, density: float) -> float:
+        """Return by how much the angle of attack that carries the weight is beyond a usual one, rad; 0 if it is not."""
+        if not (self._slope > 0.0 and density > 0.0):
+            return 0.0
+        alpha = self._slope * GRAVITY / (density * (v * v if v > LEAST_SPEED else LEAST_SPEED**2)) + self._zero
+        return min(max(0.0, alpha - USUAL), STEEPEST)
 
     def down(self, v: float, density: float) -> tuple[float, float]:
         """Return z, the sine of α, and its standard deviation at an airspeed, m/s, in air of a density, kg/m³."""

@@ -163,6 +163,9 @@ class RailWind:
             shift = (reading - felt - hu * (u - at_u) - hc * (c - at_c)) / spread
             at_u, at_c = u + hu * one * shift, c + hc * one * shift
         gain = one * one / spread
+        bend = 7.0 * static / heat  # as in `total`: the ridge of equal V is a circle
+        uu, cc, uc = one - gain * hu * hu, one - gain * hc * hc, gain * hu * hc
+        gain = one * one / (spread + 0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc))
         return at_u, at_c, one - gain * hu * hu, one - gain * hc * hc, -gain * hu * hc
 
     def _at_rest(self, u: float, c: float, static: float, heat: float) -> tuple[float, float, float]:
@@ -193,14 +196,15 @@ class RailWind:
         """Return the speed over the ground, m/s: what u has gained."""
         return u - self._start
 
-    def advance(self, dt: float, variance: float, energy: EnergyFilter) -> None:
-        """Go on by so much, s, in which gusts have added a variance to that of u, m²/s², and to that of c."""
-        self._beside.advance(dt)
+    def advance(
+        self, energy: EnergyFilter, dt: float, gained: float, variance: float, density: float, railed: bool
+    ) -> None:
+        """Go on, before `EnergyFilter.predict`, whose arguments these are; gusts widen c as they widen u."""
+        energy.predict_beside(self._beside, dt, gained, variance, density, railed)
         if self.pushed:  # up the rail the wind across grows, too
             climb = self.gained(energy.v) * energy.s / GRAVITY
             self._height += climb * dt
             self._beside.value *= 1.0 + GROWTH * climb * dt / self._height
-        self._beside.variance += variance
 
     def total(
         self,
@@ -224,7 +228,11 @@ class RailWind:
 
         felt = read(u, c)
         slopes = (read(u + SMALL, c) - felt) / SMALL, (read(u, c + SMALL) - felt) / SMALL
-        return energy.total_of_two(reading - felt, variance, pushed, slopes, self._beside)
+        # E[h] is above h of the means by half its curvature times the variances, and scatters by as much
+        bend, uu, cc, uc = 7.0 * p / heat, energy.vv, self._beside.variance, self._beside.of_v
+        variance += 0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc)
+        above = reading - felt - 0.5 * bend * (uu + cc)
+        return energy.total_of_two(above, variance, pushed, slopes, self._beside)
 
     def static(self, energy: EnergyFilter, reading: float, variance: float, ahead: float, heat: float) -> float:
         """Take a static pressure, whose port the wind blows at, as `EnergyFilter.static` does; return the NIS."""

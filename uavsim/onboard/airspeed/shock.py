@@ -12,7 +12,7 @@ from math import inf
 WIDE = 4  # readings of the head, of each mean: 40 ms at 100 Hz
 # m/s² and standard deviations of a step that is looked at. By hand: the motor's start and gusts stay below as a rule,
 # and an offset of less is within what b may do
-SIZE, DEVIATIONS = 1.0, 4.5
+SIZE, DEVIATIONS = 1.4, 6.0
 # share of the step, and of the least one, that each mean's readings may differ by: a slope has no two levels. By hand
 LEVEL, NOISE = 0.2, 0.6
 LARGEST = 15.0  # m/s²; a greater one is a push that begins or ends
@@ -20,7 +20,6 @@ WAIT = 1.0  # s until b is looked at
 # of the step, that b must have taken up and not more than its like above, and the standard deviation up to which b is
 # known. In gusts it is not, and nobody is named. By hand: no accelerometer named in 20 flights of `gusty`
 LEAST_PART, KNOWN = 0.7, 0.15
-FELT = 0.4  # of the step, up to which b has left it to the force: then b is as stiff as before. By hand
 
 
 class Shock:
@@ -62,10 +61,8 @@ class Shock:
         self._bias, self._size, self.due = bias, size, t + WAIT
         return size
 
-    def judge(self, bias: float, variance: float) -> str:
-        """Judge a step by b, m/s², and its variance: "offset", "felt", or "" for neither. The next step may come."""
+    def judge(self, bias: float, variance: float) -> tuple[bool, float]:
+        """Judge a step by b, m/s², and its variance: whether it was an offset, and by how much b has moved, m/s²."""
         taken, size, self.due = (bias - self._bias) / self._size, self._size, inf
         self._forces.clear()
-        if LEAST_PART < taken < 2.0 - LEAST_PART and variance < (KNOWN * size) ** 2:
-            return "offset"
-        return "felt" if -FELT < taken < FELT else ""
+        return LEAST_PART < taken < 2.0 - LEAST_PART and variance < (KNOWN * size) ** 2, taken * size

@@ -21,7 +21,7 @@ ALPHA = 0.12  # a memory of 0.1 s at 100 Hz: longer sees fewer gusts, shorter is
 BETA = ALPHA * ALPHA / (2.0 - ALPHA)
 SHARE = 1.0 + (2.0 * ALPHA * ALPHA + 2.0 * BETA + ALPHA * BETA) / (ALPHA * (4.0 - 2.0 * ALPHA - BETA))
 # nats, above which it is a leak. By hand; docs/faults.md, slow-leak-gusts and healthy-gusty, holds the check
-LEVEL = 24.0
+LEVEL = 18.0
 CLIP = 4.0  # squared standard deviations that ν² counts at the most. By hand: a gust that begins is no leak
 LEAST, MOST = -4.0, 1.0  # nats that a reading may say, so that no spike decides. By hand
 

@@ -66,7 +66,8 @@ LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried
 AGREE_SD = 5.0 / 3.0
 
 # kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
-UNTAKEN = ("jump", "silent", "invalid", "range")
+MUTE = ("silent", "invalid", "range")  # and there was nothing to take
+UNTAKEN = ("jump", *MUTE)
 ASTRAY = ("drift", "leak", "jump")
 # kinds of a static port that is shut, to both sensors of a head that has a differential one; others are of its sensor
 SHUT_IN = ("frozen", "swapped")
@@ -116,14 +117,17 @@ class TotalWatch:
     port : PortMonitor
     faulty : bool
         Whether the port is flagged.
+    coasts : bool
+        Whether V is carried on apart from p; after mere silence the filter goes on as it is.
     undecided : bool
         Whether an accelerometer that drifts would explain the same: in still air the airspeed crept from the force.
     """
 
     __slots__ = (
-        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_jumped",
-        "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough", "_silent",
-        "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "faulty", "port", "undecided",
+        "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
+        "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
+        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "coasts", "faulty",
+        "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -146,12 +150,12 @@ class TotalWatch:
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
         if row_variance is not None:
             self.port.back = Readmission(row_variance * apart(alike), walk, row)
-        self.faulty = self._astray = self.undecided = self._silent = False
+        self.faulty = self._astray = self.undecided = self._silent = self.coasts = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
         self._near, self._taught = 0, 0.0
-        self._pull = Pull()
+        self._pull, self._gust_variance = Pull(), aided.gust_sd**2
         self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
 
@@ -203,14 +207,16 @@ class TotalWatch:
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
-        if self._declared:
-            smooth = self._smooth.add(reading, dt, test.nis, test.spread, self._pull.size < TURNS and t > self._opened)
-            if smooth == 0.0:
-                self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
-            elif smooth > LEVEL:
-                return "leak"
+        wandering = self._wandering
         wanders = self._wanders(v, change - energy.s * dt, test.lost, dt)
-        if wanders and not (self._declared and self._smooth.evidence < DOUBTED):
+        if self._declared:
+            straight = self._pull.size < TURNS and t > self._opened
+            smooth = self._smooth.add(reading, dt, test.nis, test.spread, straight)
+            if smooth == 0.0 and not wandering.large:
+                self._rough = t, gained, v, energy.vv, energy.p, self._lost, LOST_SD * LOST_SD
+            if (smooth > LEVEL and wandering.large) or (wanders and smooth > DOUBTED):
+                return "leak"
+        elif wanders:
             return "leak"
         return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
@@ -241,10 +247,10 @@ class TotalWatch:
         self._wandering.forget()
         self._opened = t + REOPENED
 
-    def close_bias(self) -> None:
-        """Be told that b has not moved at the last step."""
+    def close_bias(self, moved: float) -> None:
+        """Be told that b has not taken up the last step, but only moved by so much, (m/s²)²."""
         variance, at = self._opened_by
-        self._jumped, self._jumped_at = variance - self._bias_sd**2, at
+        self._jumped, self._jumped_at = variance - self._bias_sd**2 + moved, at
 
     def _bias_variance(self, t: float) -> float:
         """What b may be off by at `t`, s, (m/s²)²."""
@@ -264,6 +270,11 @@ class TotalWatch:
         density, gust : float
             ρ, kg/m³, and the gusts' density, m/s².
         """
+        self.coasts = kind not in MUTE
+        if not self.coasts:  # the filter goes on as it is
+            self.port.back.flag(now[0])
+            self.faulty, self._astray, self._silent, self.undecided = True, False, False, False
+            return
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
@@ -288,6 +299,8 @@ class TotalWatch:
         v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
+        if kind == "leak":  # a gust that was there before cannot be told from its beginning
+            vv += self._gust_variance
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
 
@@ -296,7 +309,7 @@ class TotalWatch:
     ) -> None:
         """Flag a port that has not risen in the stroke; the pressure in it, and V by the force, with their variance."""
         self.port.back.flag(t, *held)
-        self.faulty = self._astray = True
+        self.faulty = self._astray = self.coasts = True
         self.undecided, self._bias = False, 0.0
         energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
@@ -307,7 +320,7 @@ class TotalWatch:
 
     def coast(self, reading: float, pressure: float, difference: float, spread: float, t: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
-        lives = not self._silent or self._smooth.lives(t, reading)
+        lives = not self._silent or self._smooth.lives(t, pressure)
         if self._astray:
             spread = min(spread, AGREE_SD * AGREE_SD)
         if not lives:

@@ -14,6 +14,7 @@ from uavsim.requirements import OUTCOME, Requirement
 from uavsim.studies.campaign import sequential
 from uavsim.studies.campaign.estimates import mean_bounds
 from uavsim.studies.campaign.sequential import Exposure, Flights
+from uavsim.studies.false_alarms import PIECE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -149,9 +150,9 @@ def seen(requirement: Requirement, flights: "pd.DataFrame", error: float, family
 
 
 def _values(requirement: Requirement, flights: "pd.DataFrame") -> Floats:
-    if requirement.key not in flights:
-        raise ValueError(f"{requirement.key}: no flight has such a number")
-    found: Floats = flights[requirement.key].to_numpy(dtype=np.float64, na_value=np.nan)
+    if requirement.column not in flights:
+        raise ValueError(f"{requirement.column}: no flight has such a number")
+    found: Floats = flights[requirement.column].to_numpy(dtype=np.float64, na_value=np.nan)
     return found
 
 
@@ -276,6 +277,8 @@ def counted(requirement: Requirement, flights: "pd.DataFrame") -> tuple[Floats, 
         counts = np.asarray(flights[OUTCOME] == requirement.equals, dtype=np.float64)
     else:
         counts = _values(requirement, flights)
+    if requirement.disturbed:
+        return counts, np.full(counts.shape, PIECE / HOUR)
     duration, release, true = (
         flights[key].to_numpy(dtype=np.float64, na_value=np.nan)
         for key in ("flight.duration", "launch.release_time", "launch.true_time")

@@ -16,12 +16,14 @@ from uavsim.requirements import OUTCOME, Requirement
 from uavsim.scenario import Scenario
 from uavsim.studies.campaign.campaign import Flights, Progress, fly_plan, given_scenario, keep_later
 from uavsim.studies.campaign.evidence import HOUR
+from uavsim.studies.campaign.exposures import Exposures
 from uavsim.studies.campaign.keep import NOTHING, Keep
 from uavsim.studies.campaign.outlook import Outlook, outlook
 from uavsim.studies.campaign.plan import Plan, Random
 from uavsim.studies.campaign.record import ABOUT, Record, frame, taken_up
 from uavsim.studies.campaign.verification import Verification, check_confidence, judge, schedule, verdicts
 from uavsim.studies.engine import Crew, Left, engine
+from uavsim.studies.false_alarms import PIECE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -165,6 +167,8 @@ def _hours(scenario: Scenario, requirement: Requirement) -> float:
     """Exposure of a flight as it is planned, hours."""
     launcher = scenario.launcher
     wait = 0.5 * (launcher.wait_min + launcher.wait_max)
+    if requirement.disturbed:
+        return PIECE / HOUR
     return max(wait if requirement.exposure == "armed" else scenario.duration - wait, 1e-3) / HOUR
 
 
@@ -196,12 +200,13 @@ def fly_until_decided(
     """
     plan = record.plan
     scenario, requirements = plan.scenario, plan.scenario.requirements
-    columns = list(dict.fromkeys((*ALWAYS, *(one.key for one in requirements))))
+    columns = list(dict.fromkeys((*ALWAYS, *(one.key for one in requirements if not one.disturbed))))
+    exposures = Exposures(plan)
     before, spent = 0, 0.0
     for look in schedule(requirements, confidence, plan.size):
         flown = fly_plan(record, crew, keep, positions=range(before, look), limit=limit, progress=progress)
         spent += flown.wall_time
-        seen = _first(frame(record.folder, columns), look)
+        seen = exposures.beside(_first(frame(record.folder, columns), look))
         decided = len(seen) > 0 and "undecided" not in verdicts(requirements, seen, confidence)
         if decided or flown.left or look == plan.size:
             break
@@ -211,7 +216,8 @@ def fly_until_decided(
     keep_later(record, crew, keep, limit)
     found = judge(requirements, seen, confidence)
     record.describe(complete=not flown.left, wall_time=spent, left=flown.left)
-    return Verified(found, scenario, _first(frame(record.folder), found.runs), flown.left)
+    rows = exposures.beside(_first(frame(record.folder), found.runs))
+    return Verified(found, scenario, rows, flown.left)
 
 
 def _first(rows: "pd.DataFrame", count: int) -> "pd.DataFrame":

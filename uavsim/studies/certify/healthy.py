@@ -64,6 +64,7 @@ LOW, HIGH = 0.90, 0.99  # of the coverage
 LEAST_VALID = 0.99
 FEWEST = 400  # flights of a level below which its figures are not judged
 FARTHEST = 6.0  # standard deviations
+MISLEADING = 1.0  # s
 FALSE = 1e-3  # upper bound of the share of flights with a false flag
 HOLM = 0.01
 TIMES_BEFORE, TIMES_RMSE, TIMES_BOUND = 1.2, 1.3, 1.1
@@ -143,7 +144,7 @@ def judge(rows: Sequence[Row], seed: int, before: dict[str, Any] | None = None) 
     """
     flown = [row for row in rows if row["outcome"] != "refused"]
     levels = [level_row(flown, factor, level) for factor in FACTORS for level in FACTORS[factor]]
-    checks = [*_outcomes(rows, flown), *_flags(flown), _farthest(flown), *_readiness(flown)]
+    checks = [*_outcomes(rows, flown), *_flags(flown), _farthest(flown), _misleading(flown), *_readiness(flown)]
     checks += _coverage(levels)
     checks.append(_cells(flown))
     checks += _fat(levels, before)
@@ -259,6 +260,13 @@ def _farthest(flown: Sequence[Row]) -> Check:
     over = int(np.sum(ratios > FARTHEST))
     found = f"{over} flights over; greatest {ratios.max(initial=0.0):.3g}"
     return Check("a valid airspeed off by more than 6 sd", "none", found, over == 0)
+
+
+def _misleading(flown: Sequence[Row]) -> Check:
+    count = sum((row.get("wrong_for") or 0.0) > MISLEADING for row in flown)
+    longest = max((row.get("wrong_for") or 0.0 for row in flown), default=0.0)
+    found = f"{count} flights; longest {longest:.2f} s"
+    return Check("valid and more than 3 m/s wrong for more than 1 s", "none", found, count == 0)
 
 
 def _readiness(flown: Sequence[Row]) -> list[Check]:
@@ -386,7 +394,7 @@ def worst(rows: Sequence[Row], seed: int) -> list[dict[str, Any]]:
             rank = (bool(row.get("flags")), row["outcome"] != "cruise", row.get("worst_ratio") or 0.0)
             found.append((rank, {"number": row["number"], "wrong": "; ".join(wrong), **_named(row, seed)}))
     found.sort(key=lambda one: one[0], reverse=True)
-    return [one for _, one in found[: 4 * WORST]]
+    return [one for _, one in found[: 2 * WORST]]
 
 
 def _named(row: Row, seed: int) -> dict[str, Any]:

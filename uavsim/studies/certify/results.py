@@ -34,20 +34,19 @@ def read(folder: Path, name: str) -> dict[str, Any] | None:
 
 
 def refreshed(page: str, folder: Path) -> str:
-    """Return a page with its blocks made anew of the verdicts in a folder.
+    """Return a page with its blocks made anew of the verdicts in a folder; one that is not there is said.
 
     Raises
     ------
     ValueError
-        A block names what is not there.
+        A block names a table that its verdict does not have.
     """
 
     def made(block: re.Match[str]) -> str:
         name, what = block.groups()
         result = read(folder, name)
-        if result is None:
-            raise ValueError(f"{name}.json is not in {folder}")
-        return "\n".join([f"<!-- certify: {name} {what} -->", *shown(result, what), "<!-- end -->"])
+        inside = shown(result, what) if result is not None else [f"`{name}` has not been flown with this version."]
+        return "\n".join([f"<!-- certify: {name} {what} -->", *inside, "<!-- end -->"])
 
     return BLOCK.sub(made, page)
 

@@ -46,8 +46,13 @@ class Verdict:
     worst: list[dict[str, Any]]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain values."""
-        return {"checks": [asdict(one) for one in self.checks], "tables": self.tables, "worst": self.worst}
+        """Return plain values; numbers of tables have five digits, as what comes of a sample has no more."""
+        tables = {name: [_short(row) for row in rows] for name, rows in self.tables.items()}
+        return {"checks": [asdict(one) for one in self.checks], "tables": tables, "worst": self.worst}
+
+
+def _short(row: dict[str, Any]) -> dict[str, Any]:
+    return {key: float(f"{value:.5g}") if isinstance(value, float) else value for key, value in row.items()}
 
 
 def lines(checks: Sequence[Check]) -> list[str]:

@@ -15,7 +15,8 @@ from uavsim.studies.paper.tunnel import TunnelStudy
 __all__ = ["NOT_REPRODUCED", "Entry", "Reproduction", "reproduce"]
 
 NOT_REPRODUCED = {
-    "Table 8": "no unit fits its errors, and its 26.42 % contradict table 7",
+    "Table 8": "its errors have no unit, and of which speeds and air they are is not said; as shares of the airspeed "
+    "at 25 to 40 m/s they fit the printed noise",
     "Table 4, figures 10 and 11": "the flow round the device's own box, of which three lengths are given; that the "
     "pressure is least in the middle of the surface that faces the stream contradicts stagnation",
     "Table 6, figures 13 and 14": "the flow round an aircraft whose shape is not given; uavsim survey computes where "

@@ -4,10 +4,11 @@ The packaged scenario `wind-tunnel` flies: 0 to 40 m/s in steps of 5 m/s, 10 s e
 16.54 and 2.40 Pa at 100 Hz. How fast, how long and at what rate the published run was is not said.
 
 Table 7 tells the gains of the paper's filter: a random walk's filter leaves √(K/(2 - K)) of white noise on a constant,
-so 13.52/16.54 is K = 0.801 and 1.87/2.40 is K = 0.756. Table 8 fits neither those nor any unit. The root is linear
-where it is steep, so that the airspeed's error falls by as much as that of p_t - p_s, 18.4 %, there and by less near
-rest: 26.42 % on the airspeed contradict 18.26 % on the total pressure. And 16.7 Pa on p_t - p_s are 0.0159 m/s at
-σ/(ρ 0.0159) = 860 m/s.
+so 13.52/16.54 is K = 0.801 and 1.87/2.40 is K = 0.756. Table 8 fits no unit of speed: 16.7 Pa on p_t - p_s are 0.0159
+m/s at σ/(ρ 0.0159) = 860 m/s. As a share of the airspeed, σ_V/V = σ/(ρV²), they are 0.0159 at 29.3 m/s. Of white noise
+the airspeed's error falls by as much as that of p_t - p_s, 18.4 %, where the root is linear, and by less near rest. So
+26.42 % take more than white noise: slow turbulence that grows with V² weighs on the pressures of the fast plateaus and
+hardly on the airspeed of the slow ones, so that the airspeed gains more than the total pressure.
 
 What the noise allows: someone who knows when the speed steps and with which lag it settles has only each level to
 find. With g = 1 - e^{-s/τ}, the share of a step that has come after s, and V(s) the speed,
@@ -48,6 +49,7 @@ FAST = 10.0  # m/s, from which plateaus are counted as such
 STEADY = 5.0  # time constants after a step from which the speed stands still, to 0.7 % of the step
 DENSITY = 1.225  # kg/m³, ISO 2533: the room of the scenario
 SOUND = 340.3  # m/s, the same
+SHARED = (25.0, 30.0, 35.0, 40.0)  # m/s, plateaus of which table 8 may be the share of the airspeed
 STATIC_ERROR = -0.27  # mean Cp_s of table 5, for figure 19
 
 
@@ -123,15 +125,18 @@ class TunnelStudy:
             ours=_with_reduction(paper),
             tolerance=TOLERANCE,
             documented=False,
-            note="Cannot be reproduced. No unit fits: the noise of table 7 makes 0.0159 m/s only at 860 m/s, and "
-            "0.0159 of Mach 1, 5.4 m/s, is more than it makes anywhere. 26.42 % contradict table 7, whose gain lowers "
-            "the airspeed's error by 18 to 20 % on fast plateaus and by less near rest. The noise itself allows more "
+            note="Cannot be reproduced: unit, speeds and air are not said. No unit of speed fits: the noise of table 7 "
+            "makes 0.0159 m/s only at 860 m/s, and 0.0159 of Mach 1, 5.4 m/s, is more than it makes anywhere. As a "
+            "share of the airspeed it is 0.0159 at 29.3 m/s. Of white noise alone table 7's gain lowers the airspeed's "
+            "error by 18 to 20 % on fast plateaus and by less near rest; 26.42 % take turbulence that grows with V², "
+            "which weighs on the pressures more than on the airspeed. The noise itself allows more "
             f"than both: {reach:.0f} % to someone who knows when the speed steps; the jump-adaptive filter, which does "
             f"not, has {_reduction(best):.0f} %.",
             details={
                 "unit": "m/s",
                 "airspeed_at_which_it_would_be_0.0159": round(_speed_for(PRINTED_AIRSPEED["original"]), 0),
                 "largest_raw_error": round(_at_rest(1.0), 2),
+                "as_share_of_airspeed_25_to_40": round(_relative(SHARED), 4),
                 "as_mach_number": round(PRINTED_AIRSPEED["original"] * SOUND, 2),
                 "paper_filter_percent_by_plateau": {
                     f"{p.speed:g}": round(p.reduction("paper"), 1) for p in self.plateaus
@@ -266,6 +271,12 @@ def _at_rest(n: Any) -> Any:
     """Return the error of the clipped root of the mean of n readings at rest, m/s."""
     sd = sqrt(TOTAL_SD**2 + STATIC_SD**2)
     return np.sqrt(2.0 / DENSITY * sd / np.sqrt(2.0 * pi * n))
+
+
+def _relative(speeds: tuple[float, ...]) -> float:
+    """Error of airspeed as a share of it, σ/(ρV²), rms over plateaus, m/s."""
+    noise = TOTAL_SD**2 + STATIC_SD**2
+    return sqrt(sum(noise / (DENSITY * v * v) ** 2 for v in speeds) / len(speeds))
 
 
 def _speed_for(error: float) -> float:
