@@ -13,9 +13,11 @@ live one does not move either. That is for the stroke (`stroke`).
 
 from math import hypot, inf, isfinite, nan, sqrt
 
+from uavsim.onboard.airspeed.difference import ZERO, channel_range
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row
+from uavsim.onboard.stamps import JUMP
 
 # s without a reading, after which a sensor is silent. Readings that are lost by chance, up to 7 in 10 at 100 Hz, make
 # such a pause once in 10⁸; more is a fault. By hand
@@ -35,8 +37,8 @@ WORDS = {
 
 
 def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
-    """Return between which values a total pressure, a static pressure, Pa, and a temperature, K, is a measurement."""
-    (a, b), (c, d), (e, f) = noise.total_range, noise.static_range, noise.temperature_range
+    """Return between which values a total channel, a static pressure, Pa, and a temperature, K, is a measurement."""
+    (a, b), (c, d), (e, f) = channel_range(noise), noise.static_range, noise.temperature_range
     return (
         (max(a, LEAST_PRESSURE), min(b, MOST_PRESSURE)),
         (max(c, LEAST_PRESSURE), min(d, MOST_PRESSURE)),
@@ -142,17 +144,21 @@ class RailCheck:
     def add(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> None:
-        """Take a row of the head."""
+        """Take a row of the head, its total channel (`difference`) in the place of the total pressure."""
         if self._first == inf:
             self._first = t
         total, static, warmth = self.sensors.values()
-        total.add(t, p_total, t_total > self._total_end)
-        static.add(t, p_static, t_static > self._static_end)
-        warmth.add(t, temperature, temperature == temperature or t_static > self._static_end)
-        self._total_end = max(self._total_end, t_total)
-        self._static_end = max(self._static_end, t_static)
-        if t <= self._tare_end and -inf < p_total - p_static < inf:
-            self._sum += p_total - p_static
+        t_total, t_static = min(t_total, t), min(t_static, t)  # no conversion ends later than its reading
+        new_total = not self._total_end - JUMP < t_total <= self._total_end
+        new_static = not self._static_end - JUMP < t_static <= self._static_end
+        total.add(t, p_total, new_total)
+        static.add(t, p_static, new_static)
+        warmth.add(t, temperature, temperature == temperature or new_static)
+        self._total_end = t_total if new_total else self._total_end
+        self._static_end = t_static if new_static else self._static_end
+        difference = p_total - (ZERO if self._noise.differential else p_static)
+        if t <= self._tare_end and -inf < difference < inf:
+            self._sum += difference
             self._count += 1
 
     def decided(self, t: float) -> bool:
@@ -177,7 +183,7 @@ class RailCheck:
         if not n or not noise.difference_sd > 0.0:
             return 0.0
         mean = self._sum / n
-        sd = hypot(noise.difference_sd, hypot(noise.total_sd, noise.static_sd) / sqrt(n))
+        sd = hypot(noise.difference_sd, hypot(noise.total_sd, 0.0 if noise.differential else noise.static_sd) / sqrt(n))
         most = max(FAR * sd, LEAST_OFFSET)
         return mean if mean < -most or mean > most + (0.0 if noise.covered else STORM) else 0.0
 
