@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sensors.port_table import fit
 from sensors.probe import static_port
 from sensors.settings import StaticPortSettings
 from uavsim import airdata
@@ -130,3 +131,13 @@ def test_k_of_mach():
     assert airdata.airspeed(total=1.02e5, static=1e5, temperature=290.0, calibration=table) == pytest.approx(
         airdata.airspeed(total=1.02e5, static=1e5, temperature=290.0) * table(float(mach[0])), rel=1e-14
     )
+
+
+def test_a_table_of_it_is_a_calibration_of_the_same_head() -> None:
+    """Small angles, where the law's z and y are alpha and beta: 1e-3 of the coefficients at 2°."""
+    static = Polynomial(((0.03, 0, 0, 0), (0.1, 0, 1, 0), (-0.6, 0, 2, 0), (-0.5, 0, 0, 2), (0.2, 2, 0, 0)))
+    angles = [math.radians(degrees) for degrees in (-2.0, -1.0, 0.0, 1.0, 2.0)]
+    table = PositionError(static=static).table(mach=(0.05, 0.2), alpha=angles, beta=angles)
+    found = fit(table)
+    assert found.static == pytest.approx((0.03, 0.1, -0.6, -0.5, 0.2), rel=2e-3)
+    assert found.left < 1e-6

@@ -11,7 +11,9 @@ insertion: where it does not settle to 1e-12 of a Mach number in 60 steps, the r
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -120,6 +122,31 @@ class PositionError:
                 break
         unsettled = _nan_where(change > _SETTLED, xp)
         return true_static + impact + unsettled, true_static + unsettled
+
+    def table(self, *, mach: Iterable[float], alpha: Iterable[float], beta: Iterable[float]) -> str:
+        """Write what the ports read over a grid as CSV: a calibration's file, for `air_data.calibration`.
+
+        Parameters
+        ----------
+        mach, alpha, beta : iterable of float
+            The grid's axes; angles in rad.
+
+        Returns
+        -------
+        str
+            The columns mach, alpha, beta, total_share, static_share, a line a point, to nine digits.
+
+        Examples
+        --------
+        >>> head = PositionError(static=Polynomial(((-0.05, 0, 0, 0), (0.2, 0, 1, 0))))
+        >>> print(head.table(mach=(0.1,), alpha=(0.0, 0.1), beta=(0.0,)), end="")
+        mach,alpha,beta,total_share,static_share
+        0.1,0,0,1,-0.05
+        0.1,0.1,0,1,-0.03
+        """
+        points = product(mach, alpha, beta)
+        rows = (",".join(f"{value:.9g}" for value in (*at, self.total(*at), self.static(*at))) for at in points)
+        return "\n".join(("mach,alpha,beta,total_share,static_share", *rows, ""))
 
     def gradient(
         self, *, total: Numbers, static: Numbers | float, alpha: Numbers | float = 0.0, beta: Numbers | float = 0.0
