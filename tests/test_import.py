@@ -59,7 +59,8 @@ def test_onboard_loads_nothing_of_the_truth() -> None:
     assert modules == {
         "uavsim", "uavsim.airdata", "uavsim.onboard", "uavsim.onboard.launch", "uavsim.onboard.airspeed",
         "uavsim.onboard.flight_computer", "uavsim.onboard.interface", "uavsim.onboard.plausible",
-        "uavsim.onboard.stamps", "uavsim.failure", "uavsim.registry", "uavsim.compiled",
+        "uavsim.onboard.stamps", "uavsim.onboard.rail_offset", "uavsim.onboard.stroke", "uavsim.onboard.readiness",
+        "uavsim.onboard.repeats", "uavsim.failure", "uavsim.registry", "uavsim.compiled",
     }  # fmt: skip
 
 
@@ -70,7 +71,7 @@ def test_a_replay_needs_no_jsbsim(tmp_path: Path) -> None:
     uavsim.fly("catapult", overrides=["duration=5"]).save(folder)
     code = (
         "import sys; sys.modules['jsbsim'] = None; import uavsim; from uavsim.cosim import replay; "
-        f"print(replay(uavsim.load({str(folder)!r})).events[0]['event'])"
+        f"print(replay(uavsim.load({str(folder)!r})).events[1]['event'])"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.split() == ["launch_detected"]

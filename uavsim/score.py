@@ -22,7 +22,6 @@ from uavsim import misleading
 from uavsim.consistency import LAGS, LEAST, ljung_box
 from uavsim.criteria import outcome, reason
 from uavsim.files import without_none
-from uavsim.installation import installation
 from uavsim.judged import Array, Judged
 from uavsim.score_keys import PHASES, PRESSURE, PRESSURES, SPEEDS
 
@@ -41,6 +40,8 @@ def score(flight: Judged) -> dict[str, Any]:
 
 
 def _score(flight: Judged) -> dict[str, Any]:
+    from uavsim.installation import installation  # late: a score that is read needs no sensors
+
     launch = _launch(flight)
     airspeed = _airspeed(flight)
     ended = outcome(flight)

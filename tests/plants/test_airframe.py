@@ -299,7 +299,7 @@ def test_a_function_that_fails_in_the_air_ends_the_flight_with_a_reason(tmp_path
     score = json.loads((out / "score.json").read_text())
     assert score["outcome"] == "diverged"
     assert score["reason"].startswith(f"In file fw8/fw8.xml: line {line} The switch function index")
-    assert "reason: In file fw8/fw8.xml" in done.stdout
+    assert "Reason: In file fw8/fw8.xml" in done.stdout
     again = replay(uavsim.load(out)).save(tmp_path / "again")
     assert (again / "score.json").read_bytes() == (out / "score.json").read_bytes()
 

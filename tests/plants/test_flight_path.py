@@ -198,7 +198,7 @@ def test_the_air_at_rest_is_that_in_which_the_aircraft_flies() -> None:
 def test_it_flies_with_what_is_on_board_and_replays() -> None:
     flight = fly("manoeuvres", seed=3, overrides=["duration=9"])
     names = [event["event"] for event in flight.events]
-    assert names[:4] == ["launch_detected", "stroke_end", "wings_commanded", "motor_on"]
+    assert names[:5] == ["ready", "launch_detected", "stroke_end", "wings_commanded", "motor_on"]
     assert flight.score["outcome"] == "completed"
     assert 0.005 < flight.score["launch"]["latency"] < 0.03
     assert any("legs[" in remark for remark in flight.score["remarks"])
@@ -214,7 +214,10 @@ def test_the_wash_of_the_propeller_at_full_throttle_is_at_both_ports() -> None:
         for name in ("total", "static")
         for key in ("preset=bmp581", "noise_scale=0", "unit=ideal")
     ]
-    wash = ("total_port.slipstream=0.2", "static_port.slipstream=0.5", "static_port.error=0.04")
+    wash = (
+        "total_port.slipstream=0.2", "static_port.slipstream=0.5", "static_port.error=0.04",
+        "static_port.error_alpha2=0", "static_port.error_beta2=0",
+    )  # fmt: skip
     legs = "plant.flight_path.legs=[{duration=2,airspeed=40,climb_deg=0},{duration=1,throttle=1}]"
     still = [f"air_data.{name}.errors.{what}=0" for name in ("total", "static") for what in ("drift", "random_walk")]
     flight = fly(

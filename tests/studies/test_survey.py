@@ -421,6 +421,7 @@ def test_a_flight_with_the_named_port_errs_as_the_survey_says(tmp_path):
     found = surveyed()
     view.save(found, tmp_path, plots=False)
     quiet = [f"air_data.{port}.{key}" for port in ("total", "static") for key in ('unit="ideal"', "noise_scale=0")]
+    quiet.append('air_data.calibration="none"')  # else it is corrected
     flight = uavsim.fly(str(tmp_path / "position_error.toml"), seed=1, overrides=["duration=12", *quiet])
     truth, estimate = flight.truth, flight.estimate
     cruise = estimate[estimate["t"] > flight.score["flight"]["wing_out_time"] + 2.5]
