@@ -367,7 +367,7 @@ def test_nan_in_every_truth_column_that_no_sensor_reads_changes_nothing(scenario
         "fy",
         "fz",
     }  # the force is handed on as it is felt, not by the record
-    assert len(clean[3]) == 4  # it flew all the way to the motor
+    assert clean[3][-1]["event"] == "motor_on"
 
 
 @pytest.mark.parametrize("lost", READ_BY_THE_HEAD)
@@ -619,7 +619,7 @@ def test_the_tare_takes_the_pairs_difference_off() -> None:
 
 def test_a_missed_launch_leaves_the_wings_folded_and_the_motor_off(weak_launch: Flight) -> None:
     assert weak_launch.score["outcome"] == "missed_launch"
-    assert [e["event"] for e in weak_launch.events] == ["ready"]
+    assert {e["event"] for e in weak_launch.events} <= {"ready", "not_ready"}
     assert column(weak_launch, "truth", "wing").max() == 0.0
     assert column(weak_launch, "truth", "throttle").max() == 0.0
 
