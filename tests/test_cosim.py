@@ -257,6 +257,16 @@ def test_replay_needs_no_truth(launch: Flight) -> None:
     same(replay(Flight(launch.scenario, {**launch.tables, "truth": truth}, [], {})), launch, "estimate", "detector")
 
 
+def test_a_record_in_degrees_celsius_is_refused_in_one_line(launch: Flight) -> None:
+    """But a thermometer that was made to fail may say 15."""
+    air = launch.air_data.copy()
+    air["temperature"] -= 273.15
+    with pytest.raises(ValueError, match=r"^air_data: temperature must be in K; .*: degrees Celsius\?$"):
+        replay(Flight(launch.scenario, {**launch.tables, "air_data": air}, [], {}))
+    failed = uavsim.fly(short('air_data.thermometer_faults=[{kind="dead",size=15}]'))
+    same(replay(failed), failed)
+
+
 def test_a_changed_reading_changes_the_replay(launch: Flight) -> None:
     """Without this the tests above could not fail."""
     air = launch.air_data.copy()

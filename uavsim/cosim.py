@@ -22,7 +22,7 @@ from weakref import proxy
 
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
-from uavsim import __version__, part_range
+from uavsim import __version__, airdata, part_range
 from uavsim.beliefs import NO_CALIBRATION, Calibration, believed_air, believed_flow, believed_noise, calibrated
 from uavsim.criteria import TOUCHED
 from uavsim.dispersions import resolved
@@ -406,6 +406,17 @@ def flown(scenario: Scenario, progress: Progress | None = None) -> Flight:
     return simulation.finish()
 
 
+def check_units(flight: Flight, scenario: Scenario) -> None:
+    """Refuse a record whose temperatures are in degrees Celsius; ValueError, one line.
+
+    A thermometer that was made to fail may say anything, and so may some readings of a whole one: it is the middle one
+    that counts, of a thermometer without faults.
+    """
+    middle = float(flight.air_data["temperature"].median())  # NaN where there is none
+    if middle < airdata.MIN_TEMPERATURE and not scenario.air_data.thermometer_faults:
+        raise ValueError(f"air_data: temperature must be in K; half of it is below {middle:.4g}: degrees Celsius?")
+
+
 def replay(flight: Flight) -> Flight:
     """Feed a flight's own readings through the same onboard code.
 
@@ -414,8 +425,14 @@ def replay(flight: Flight) -> Flight:
     Flight
         Its events and estimates equal the flight's bit for bit; truth, where there is one, is handed through and
         scores them.
+
+    Raises
+    ------
+    ValueError
+        As of `check_units`.
     """
     scenario = Scenario.from_dict(flight.scenario)
+    check_units(flight, scenario)
     draws = draw(scenario)
     onboard = Onboard(scenario, draws.release_time, draws.calibration)
     readings: list[Reading] = [(a, b, c, d) for a, b, c, d in flight.accelerometer.to_numpy().tolist()]

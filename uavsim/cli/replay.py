@@ -50,6 +50,7 @@ def _is_flight(path: Path) -> bool:
 
 
 def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bool, as_json: bool) -> None:
+    from uavsim.cosim import check_units
     from uavsim.cosim import replay as replay_flight
     from uavsim.flight import UNITS, load
     from uavsim.scenario import Scenario
@@ -62,10 +63,11 @@ def _replay_flight(flight: Path, out: Path | None, *, plots: bool, overwrite: bo
         recorded = load(flight)
         if "recording" in recorded.scenario:
             raise ValueError(f"{flight} is the replay of a log: replay the log itself")
-        Scenario.from_dict(recorded.scenario, str(flight / "scenario.toml"))
+        scenario = Scenario.from_dict(recorded.scenario, str(flight / "scenario.toml"))
         missing = [table for table in UNITS if table not in recorded.tables]
         if missing:
             raise ValueError(f"{flight} cannot be replayed: {missing[0]}.parquet is missing")
+        check_units(recorded, scenario)
     with folder(out, name, overwrite=overwrite) as place:  # before anything is replayed in vain
         again = replay_flight(recorded)
         again.write(place.folder, plotter(again) if plots else None)
