@@ -21,6 +21,7 @@ a bias that comes and goes with the push: when the mean force f changes, b gains
 scale error's standard deviation.
 
 **Valid** is an airspeed from 8 σ_V on. That is 2 V* of the pressures' law (`paper`), and it also holds while coasting.
+On a rail none is valid before the launch is recognised.
 
 **When the filter ends.** Beyond all bounds it has diverged, and the pressures alone are filtered, as before the launch.
 A step of a clock (`uavsim.onboard.stamps`) ends it, too. It then begins anew in flight, with V from the pressures, as
@@ -100,6 +101,9 @@ SUDDEN, SUDDEN_SD = 100.0, 15.0
 # Pa/s that are granted beside: ρ V V̇ at 60 m/s and 40 m/s², or a dive at 250 m/s; in the stroke ρ V V̇ at 80 m/s and
 # 500 m/s²
 STEEP, STROKE = 3e3, 5e4
+# share of ρV², beside `SUDDEN`, by which a total pressure may be below the static one, and still tell that the filter
+# is wrong; a lower one is of no airspeed. By hand: four times what ports of a UAV are off by
+NO_SPEED = 0.2
 # standard deviations of the accelerometer's offset, by which a reading of a plausible force may be beyond its bound.
 # Beyond it a reading is a missing one. By hand: the usual three
 FARTHEST = 3.0
@@ -160,12 +164,12 @@ class AidedFilter(Estimator):
         "_air", "_angles", "_apart", "_base", "_coldest", "_fastest", "_first_climb", "_flight_force", "_force",
         "_fresh", "_gained", "_gated", "_grown", "_head", "_heard", "_lift", "_longest", "_muted", "_noise",
         "_on_rail", "_onset", "_pause", "_plain", "_plain_tare", "_position", "_position_share", "_push", "_push_end",
-        "_push_variance", "_rail", "_read", "_rest", "_rest_sd", "_rows", "_scale_variance", "_settings", "_shock",
-        "_stamps", "_start_wind", "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_static_within",
-        "_steady_from", "_steps", "_stroke", "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_throttle",
-        "_total_age", "_total_ends", "_total_spikes", "_total_variance", "_total_within", "_u", "_unfolding", "_w",
-        "_waiting", "_warmed", "_warmed_share", "_warmest", "_wind", "_wind_known", "_wrong", "energy",
-        "flying", "news", "ports", "time",
+        "_push_variance", "_rail", "_railed", "_read", "_rest", "_rest_sd", "_rows", "_scale_variance", "_settings",
+        "_shock", "_stamps", "_start_wind", "_static_age", "_static_ends", "_static_share", "_static_spikes",
+        "_static_variance", "_static_within", "_steady_from", "_steps", "_storm", "_stroke", "_sudden", "_t", "_tare",
+        "_tare_end", "_temperature_share", "_throttle", "_total_age", "_total_ends", "_total_spikes",
+        "_total_variance", "_total_within", "_u", "_unfolding", "_w", "_waiting", "_warmed", "_warmed_share",
+        "_warmest", "_wind", "_wind_known", "_wrong", "energy", "flying", "news", "ports", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -184,7 +188,7 @@ class AidedFilter(Estimator):
         self._total_variance = max(noise.total_sd, MODEL) ** 2
         self._static_variance = max(noise.static_sd, MODEL) ** 2
         self._scale_variance = noise.accelerometer_scale_sd**2
-        self._temperature_share = 0.5 * noise.temperature_sd
+        self._temperature_share, self._static_share = 0.5 * noise.temperature_sd, 0.5 * noise.static_offset_sd
         self._warmed_share = 0.5 * noise.thermometer_recovery_sd
         self._on_rail = aided.on_rail
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
@@ -201,6 +205,7 @@ class AidedFilter(Estimator):
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
         self._wind, self._angles, self._head = RailWind(aided, noise.head), FlowAngles(aided), noise.head
         self._wind_known = self._wind.declared or self._tare_end == -inf
+        self._railed, self._storm = noise.rail_elevation is not None, hypot(STORM, self._wind.speed_declared)
         self._wrong, self._throttle, self._position_share = not noise.head.none, 0.0, 0.0
         self._position = noise.head.error / (1.0 - noise.head.error)
         self._warmed = 0.2 * noise.thermometer_recovery
@@ -280,9 +285,17 @@ class AidedFilter(Estimator):
         if estimate is None:
             return None
         self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
-        if estimate[6] and (t < self._gated < inf or self._rail.broken(t)):
+        if estimate[6] and (t < self._gated < inf or self._of_rail(estimate[1]) or self._rail.broken(t)):
             return (*estimate[:6], False, *estimate[7:])
         return estimate
+
+    def _of_rail(self, speed: float) -> bool:
+        """Whether an airspeed of the pressures alone, m/s, may be that of the wind on a rail.
+
+        What is read there is no airspeed of a flight: an open tare holds the wind, and after a cover the filter still
+        runs in. It begins with the launch. A launch that is missed is known by what no wind can be.
+        """
+        return self._railed and self._gated == inf and speed < self._storm
 
     def doubts(self, t: float) -> tuple[str, ...] | None:
         """Why the head is not ready to be launched; see `Estimator.doubts`."""
@@ -486,10 +499,10 @@ class AidedFilter(Estimator):
         self._angles.forget()
         return core
 
-    def _on_the_rail(self, end: float) -> tuple[float, float] | None:
-        """Return the pair's mean difference at rest until `end`, s, the head being open, and its variance."""
+    def _on_the_rail(self, end: float, longest: float = inf) -> tuple[float, float] | None:
+        """Return the pair's mean difference at rest in the last seconds until `end`, and its variance."""
         each = self._total_variance + self._static_variance
-        return rest_difference(self._rows, start=self._tare_end, end=end, each=each)
+        return rest_difference(self._rows, start=max(self._tare_end, end - longest), end=end, each=each)
 
     def _look_at_wind(
         self, start: float, static: float, density: float, tare_variance: float
@@ -498,10 +511,12 @@ class AidedFilter(Estimator):
         air, noise = self._air, self._noise
         self._onset.know()
         tared = noise.covered and self._tare_end > -inf
-        seen = self._on_the_rail(start)
+        # A gust of the tare is over when the aircraft is launched. What is read last has the wind in it that the filter
+        # begins in, so that the errors of both go together
+        seen = self._on_the_rail(start, 2.0 * AGO)
         if tared and seen is not None:
             seen = seen[0] - self._tare, seen[1] + tare_variance
-        elif not tared and self._tare_end > -inf:
+        elif not tared and self._tare_end > -inf and seen is None:
             seen = self._waiting.tare()
             seen = seen if seen[1] > 0.0 else None
         gusts = air.gust * max(self._wind.speed_declared, SLOWEST) * AGO
@@ -543,9 +558,8 @@ class AidedFilter(Estimator):
         spread = sqrt(
             (self._total_variance + self._static_variance) / len(found) + (variance or self._noise.difference_sd**2)
         )
-        wind = hypot(STORM, self._wind.speed_declared)
         excess = sum(found) / len(found) - tare
-        return excess > 0.5 * static / self._air.gas * wind * wind + UNLIKELY * spread
+        return excess > 0.5 * static / self._air.gas * self._storm * self._storm + UNLIKELY * spread
 
     def _begin_aloft(self, start: float, t: float) -> None:
         """Begin in flight, or in a push, at an instant, s: V by the next total pressure, climb and bias not known."""
@@ -885,7 +899,10 @@ class AidedFilter(Estimator):
         nis = self._measure(tared, variance, pushed)
         if energy.taken:
             self._fresh = self._t
-        if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
+        below = energy.p - tared > NO_SPEED * air.density * energy.v * energy.v + self._sudden
+        if (
+            not energy.taken and self.time < self._steady_from and not below
+        ):  # too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.widen_speed((energy.innovation / slope) ** 2)
         if not on_rail and energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
@@ -948,6 +965,9 @@ class AidedFilter(Estimator):
             variance += hidden * hidden
         variance += self.ports.between
         share = self._temperature_share * speed / air.temperature
+        if self._static_share > 0.0:
+            dense = self._static_share * speed / static
+            share = sqrt(share * share + dense * dense)
         if self._wrong:
             position = self._position_share * speed
             if self._wind.on and speed > SLOWEST:

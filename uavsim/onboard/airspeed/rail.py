@@ -16,6 +16,7 @@ from math import hypot, inf, isfinite, nan, sqrt
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row
+from uavsim.onboard.stamps import Conversions, jump
 
 # s without a reading, after which a sensor is silent. Readings that are lost by chance, up to 7 in 10 at 100 Hz, make
 # such a pause once in 10⁸; more is a fault. By hand
@@ -117,13 +118,14 @@ class RailCheck:
         Until when the head is under its cover, s; −inf without one.
     """
 
-    __slots__ = ("_count", "_first", "_noise", "_static_end", "_sum", "_tare_end", "_total_end", "sensors")
+    __slots__ = ("_count", "_first", "_noise", "_static_ends", "_sum", "_tare_end", "_total_ends", "sensors")
 
     def __init__(self, noise: NoiseModel, tare_end: float) -> None:
         self._noise, self._tare_end = noise, tare_end
         total, static, warmth = limits(noise)
         (total_row, _), (static_row, _) = rows_allowed(noise)
-        silent = pause(noise)
+        silent, longest = pause(noise), jump(noise.head_rate)
+        self._total_ends, self._static_ends = Conversions(longest), Conversions(longest)
         self.sensors = {
             "total": SensorCheck(total, silent, total_row),
             "static": SensorCheck(static, silent, static_row),
@@ -136,7 +138,8 @@ class RailCheck:
         for sensor in self.sensors.values():
             sensor.forget()
         self._first = inf
-        self._total_end = self._static_end = -inf
+        self._total_ends.forget()
+        self._static_ends.forget()
         self._sum, self._count = 0.0, 0
 
     def add(
@@ -146,11 +149,11 @@ class RailCheck:
         if self._first == inf:
             self._first = t
         total, static, warmth = self.sensors.values()
-        total.add(t, p_total, t_total > self._total_end)
-        static.add(t, p_static, t_static > self._static_end)
-        warmth.add(t, temperature, temperature == temperature or t_static > self._static_end)
-        self._total_end = max(self._total_end, t_total)
-        self._static_end = max(self._static_end, t_static)
+        end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
+        new_static = end_static == end_static  # not NaN
+        total.add(t, p_total, end_total == end_total)
+        static.add(t, p_static, new_static)
+        warmth.add(t, temperature, temperature == temperature or new_static)
         if t <= self._tare_end and -inf < p_total - p_static < inf:
             self._sum += p_total - p_static
             self._count += 1
