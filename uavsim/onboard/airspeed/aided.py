@@ -83,6 +83,9 @@ ANYWHERE, AROUND = 3e4, 1e3
 
 # s, and readings of the head, from the start on, by which it is judged whether the aircraft rests on its rail. By hand
 AT_FIRST, FIRST_ROWS = 0.05, 5
+# m/s, speed over the ground up to which a push has not begun: V may change by what is learned of the wind. By hand: a
+# tenth of any launch's
+BEGUN = 3.0
 IN_PUSH = 30.0  # m/s², mean force at the start of a replay that is a push: three times what any rest has. By hand
 STORM = 25.0  # m/s, a wind beyond which nobody launches: 12 Beaufort are 33
 UNLIKELY = 5.0  # standard deviations of the pair's difference beside it
@@ -431,6 +434,7 @@ class AidedFilter(Estimator):
     def _climbed(self, reading: float, before: float) -> None:
         """Judge by a static pressure, Pa, whether its port lives; the last one was of a time `before`, s."""
         test, energy, density = self._first_climb, self.energy, self._air.density
+        ground = self._speed_since_launch()
         if self.ports.total.faulty or self.ports.static.faulty:
             test.open, test.hidden = False, 0.0
         elif test.add(
@@ -439,8 +443,8 @@ class AidedFilter(Estimator):
             energy.v,
             self._u,
             density,
-            self._push_end.lasts,
-            ground=self._speed_since_launch(),
+            self._push_end.lasts or self._wind.on or ground < BEGUN,
+            ground=ground,
             position=self._position,
             position_sd=2.0 * self._position_share,
         ):

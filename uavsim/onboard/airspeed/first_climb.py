@@ -66,8 +66,8 @@ class FirstClimb:
     """
 
     __slots__ = (
-        "_beyond", "_height", "_level_for", "_mean", "_moved_for", "_need", "_odds", "_reference", "_slope", "_variance",
-        "hidden", "lost", "open", "rest",
+        "_beyond", "_height", "_level_for", "_mean", "_moved_for", "_need", "_odds", "_reference", "_slope",
+        "_variance", "hidden", "lost", "open", "rest",
     )  # fmt: skip
 
     def __init__(self) -> None:
@@ -138,10 +138,10 @@ class FirstClimb:
         if lost < 0.0:
             hidden = max(hidden, -halved * lost)
         self.hidden = hidden / sqrt(1.0 + exp(-self._odds))
-        if lost < LOST or self._flies_level(dt, speed):
+        shut = lost < LOST and self._odds > PRIOR - SAID  # a gust can lose as much while the readings speak for life
+        if shut or self._flies_level(dt, speed):
             self.open, self.hidden = False, 0.0
-            return lost < LOST
-        return False
+        return shut
 
     def _flies_level(self, dt: float, speed: float) -> bool:
         """Whether the force has shown for long enough that the aircraft has not climbed as its rail points."""
