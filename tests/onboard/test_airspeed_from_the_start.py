@@ -267,3 +267,20 @@ def test_a_static_port_in_level_flight_is_not_doubted_for_ever():
         assert shut is climbs
         assert test.hidden == 0.0
         assert not test.open
+
+
+@pytest.mark.parametrize(("rises", "named"), [(False, True), (True, False)])
+def test_a_gust_that_takes_4_m_per_s_condemns_no_static_port_that_has_risen(rises, named):
+    """0.7 m up the rail, 8 Pa: less than what a mean of readings of 6 Pa must have moved, but each of them tells."""
+    test = first_climb.FirstClimb()
+    test.begin(101_325.0, 6.0, 0.2)
+    draw, height, found = np.random.default_rng(9606), 0.0, False
+    for k in range(50):
+        speed = min(26.0, float(k))
+        height += 0.0019 * speed * (k < 26) * rises
+        reading = 101_325.0 - 1.2 * 9.81 * height + draw.normal(0.0, 6.0)
+        told = speed - 4.0 * (k > 40)
+        found = found or test.add(
+            reading, 0.01, told, speed, 1.2, k < 26, ground=speed, position=0.0, position_sd=0.0
+        )  # fmt: skip
+    assert found is named
