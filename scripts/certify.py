@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from uavsim.files import write_json, write_text
+from uavsim.interrupts import like_ctrl_c
 from uavsim.score_keys import PHASES
-from uavsim.studies.certify.record import about, rows_in, run
+from uavsim.studies.certify.record import ROWS, about, rows_in, run
 from uavsim.studies.certify.results import read, refreshed
 from uavsim.studies.certify.sets import SETS, Set
 from uavsim.studies.certify.verdict import lines
@@ -51,6 +52,8 @@ def flown(one: Set, options: argparse.Namespace) -> list[dict[str, Any]]:
     """Fly a set, or read what was flown."""
     folder = options.out / one.name
     if options.judge:
+        if not (folder / ROWS).is_file():
+            raise ValueError(f"{folder} holds no flights")
         return rows_in(folder)
     tasks = one.tasks(options.seed if options.seed is not None else one.seed, options.sample)
     started = time.monotonic()
@@ -119,7 +122,8 @@ def main() -> int:
     if unknown:
         sys.exit(f"Error: unknown set {unknown[0]!r}; there are {', '.join(SETS)}")
     try:
-        met = [certify(SETS[name], options) for name in options.sets or SETS]
+        with like_ctrl_c():
+            met = [certify(SETS[name], options) for name in options.sets or SETS]
         if options.docs:
             write_docs(options.results or RESULTS)
     except (ValueError, OSError) as error:

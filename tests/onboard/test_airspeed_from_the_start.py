@@ -279,7 +279,7 @@ def test_a_gust_that_takes_4_m_per_s_condemns_no_static_port_that_has_risen(rise
         speed = min(26.0, float(k))
         height += 0.0019 * speed * (k < 26) * rises
         reading = 101_325.0 - 1.2 * 9.81 * height + draw.normal(0.0, 6.0)
-        told = speed - 4.0 * (k > 40)
+        told = speed - 0.25 * min(16, max(0, k - 30))
         found = found or test.add(
             reading, 0.01, told, speed, 1.2, k < 26, ground=speed, position=0.0, position_sd=0.0
         )  # fmt: skip

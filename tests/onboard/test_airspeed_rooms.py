@@ -162,7 +162,7 @@ def watched(total, static):
     air.at(90_000.0, 0.0)
     ports = Ports(AidedSettings(), air, NoiseModel(2.0, 3.0, 0.0), 4.0, 9.0)
     ports.total, ports.static = total, static
-    ports.seen_total, ports.seen_static = (91_000.0, 1.3), (90_000.0, 4.99, 9.7)
+    ports.seen_total, ports.seen_static = (91_000.0, 91_000.0, 1.3), (90_000.0, 4.99, 9.7)
     return ports
 
 
@@ -213,7 +213,7 @@ def test_missing_forces_let_the_total_ports_tests_begin_anew():
     ports.judge(5.0, energy(), 4.98, 1.7)
     assert (ports.total.paused, ports.torn) == (1, False)
     assert ports.total.taken[3] == 9.7
-    ports.seen_total, ports.seen_static = (91_000.0, 1.3), (90_000.0, 4.99, nan)
+    ports.seen_total, ports.seen_static = (91_000.0, 91_000.0, 1.3), (90_000.0, 4.99, nan)
     ports.judge(5.01, energy(), 4.99, 1.7)
     assert (ports.total.paused, ports.total.taken[3]) == (1, 9.7)
 

@@ -15,6 +15,12 @@ is of another instant, some milliseconds away. In those it moves by ρ V s Δt; 
 So it is compared across the difference. The integral of the specific force is kept in `speed_gained`, so that a reading
 of the accelerometer costs one sum.
 
+**A differential sensor.** Its channel is Δp (`difference`), and the filter's total pressure is read relative to the
+static one (`energy_model`). Where it reads Δp (1 + κ) all that it can say is V' = V (1 + κ/2), and V̇' is that by as
+much. So the filter's airspeed is V', for which f_x has a scale error of κ/2 more, and σ_κ V/2 goes into what is told.
+What the force would say of κ itself in the stroke, a third of its variance at the best, is not used. A static port that
+is shut is shut for both sensors. Then Δp and the pressure that is shut in are together the total pressure.
+
 **Push.** The specific force bends the membranes of the pressure sensors. The known part of that error is taken off.
 What is not known of its coefficient is the state k until the flight is steady. The scale error of the accelerometer is
 a bias that comes and goes with the push: when the mean force f changes, b gains the variance σ² |Δ(f²)|, σ being the
@@ -29,11 +35,13 @@ soon as the clocks of head and accelerometer agree.
 """
 
 from collections import deque
+from collections.abc import Iterator
 from dataclasses import replace
 from math import hypot, inf, nan, sqrt
 
 from uavsim import airdata
 from uavsim.onboard.airspeed.air import SLOWEST, Air
+from uavsim.onboard.airspeed.difference import Difference, channel_range
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.first_climb import FirstClimb
@@ -164,15 +172,16 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_angles", "_apart", "_base", "_coldest", "_fastest", "_first_climb", "_flight_force", "_force",
-        "_fresh", "_gained", "_gated", "_grown", "_head", "_heard", "_lift", "_longest", "_muted", "_noise",
-        "_on_rail", "_onset", "_pause", "_plain", "_plain_tare", "_position", "_position_share", "_push", "_push_end",
-        "_push_variance", "_rail", "_railed", "_read", "_rest", "_rest_sd", "_rows", "_scale_variance", "_settings",
-        "_shock", "_stamps", "_start_wind", "_static_age", "_static_ends", "_static_share", "_static_spikes",
-        "_static_variance", "_static_within", "_steady_from", "_steps", "_storm", "_stroke", "_sudden", "_t", "_tare",
-        "_tare_end", "_temperature_share", "_throttle", "_total_age", "_total_ends", "_total_spikes",
-        "_total_variance", "_total_within", "_u", "_unfolding", "_w", "_waiting", "_warmed", "_warmed_share",
-        "_warmest", "_wind", "_wind_known", "_wrong", "energy", "flying", "news", "ports", "time",
+        "_air", "_angles", "_apart", "_base", "_coldest", "_difference", "_differential", "_fastest", "_first_climb",
+        "_flight_force", "_force", "_fresh", "_gained", "_gated", "_grown", "_head", "_heard", "_lift", "_longest",
+        "_muted", "_noise", "_on_rail", "_onset", "_pair_variance", "_pause", "_plain", "_plain_tare", "_position",
+        "_position_share", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd",
+        "_rows", "_scale_share", "_scale_variance", "_settings", "_shock", "_stamps", "_start_wind", "_static_age",
+        "_static_ends", "_static_share", "_static_spikes", "_static_variance", "_static_within", "_steady_from",
+        "_steps", "_stroke", "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_throttle",
+        "_total_age", "_total_ends", "_total_spikes", "_total_variance", "_total_within", "_u", "_unfolding", "_w",
+        "_waiting", "_warmed", "_warmed_share", "_warmest", "_warmth", "_wind", "_wind_known", "_wrong", "energy",
+        "flying", "news", "ports", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -190,7 +199,10 @@ class AidedFilter(Estimator):
         self._static_age = 0.5 * noise.static_window + noise.static_lag
         self._total_variance = max(noise.total_sd, MODEL) ** 2
         self._static_variance = max(noise.static_sd, MODEL) ** 2
-        self._scale_variance = noise.accelerometer_scale_sd**2
+        self._pair_variance = self._total_variance + (0.0 if noise.differential else self._static_variance)
+        self._difference, self._differential = Difference(noise.differential), noise.differential
+        self._scale_share = 0.5 * noise.difference_scale_sd
+        self._scale_variance = noise.accelerometer_scale_sd**2 + self._scale_share**2
         self._temperature_share, self._static_share = 0.5 * noise.temperature_sd, 0.5 * noise.static_offset_sd
         self._warmed_share = 0.5 * noise.thermometer_recovery_sd
         self._on_rail = aided.on_rail
@@ -203,16 +215,15 @@ class AidedFilter(Estimator):
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
         self._watch_sensors(noise)
-        self._total_within = within(noise.total_range, noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._total_within = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._static_within = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
         self._wind, self._angles, self._head = RailWind(aided, noise.head), FlowAngles(aided), noise.head
         self._wind_known = self._wind.declared or self._tare_end == -inf
-        self._railed, self._storm = noise.rail_elevation is not None, hypot(STORM, self._wind.speed_declared)
         self._wrong, self._throttle, self._position_share = not noise.head.none, 0.0, 0.0
         self._position = noise.head.error / (1.0 - noise.head.error)
         self._warmed = 0.2 * noise.thermometer_recovery
-        self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
+        self._onset = Onset(self._pair_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
         self.ports = Ports(self._settings.aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
@@ -276,14 +287,15 @@ class AidedFilter(Estimator):
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
         """Filter the pressures by themselves: on the rail, and after the filter has ended."""
+        channel = self._difference.read(p_total, p_static)
         if self._gated < inf:
             reach = self._sudden + STEEP * (self._pause if t - self._t > self._pause else max(t - self._t, 0.0))
             self._t = t
-            total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
+            total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
             p_total, p_static = p_total if total else nan, p_static if static else nan
             if JUMPED in (total, static):
                 self._gated = max(self._gated, t + WILD)
-        self._rail.add(t, p_total, p_static, temperature, t_total, t_static)
+        self._rail.add(t, channel, p_static, temperature, t_total, t_static)
         estimate = self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
         if estimate is None:
             return None
@@ -298,7 +310,8 @@ class AidedFilter(Estimator):
         What is read there is no airspeed of a flight: an open tare holds the wind, and after a cover the filter still
         runs in. It begins with the launch. A launch that is missed is known by what no wind can be.
         """
-        return self._railed and self._gated == inf and speed < self._storm
+        on_rail = self._noise.rail_elevation is not None and self._gated == inf
+        return on_rail and speed < hypot(STORM, self._wind.speed_declared)
 
     def doubts(self, t: float) -> tuple[str, ...] | None:
         """Why the head is not ready to be launched; see `Estimator.doubts`."""
@@ -423,13 +436,18 @@ class AidedFilter(Estimator):
                 self._muted[1], self._heard[2] = True, -inf
             self.ports.dead_at_rest(t, energy, channel, kind, (0.0, self._settings.wind_sd**2))
         self._stroke.begin(
-            () if broken else self._rows,
+            () if broken else self._channels(),
             tare_end=self._tare_end if self._noise.covered else -inf,
             end=start,
             variance=self._total_variance,
             wind=most_wind(*self._start_wind),
             density=energy.p / self._air.gas,
         )
+
+    def _channels(self) -> Iterator[Row]:
+        """Return the rows that were kept, each with its total channel in the place of the total pressure."""
+        read = Difference(self._differential).read
+        return ((row[0], read(row[1], row[2]), *row[2:]) for row in self._rows)
 
     def _climbed(self, reading: float, before: float) -> None:
         """Judge by a static pressure, Pa, whether its port lives; the last one was of a time `before`, s."""
@@ -457,7 +475,10 @@ class AidedFilter(Estimator):
         since, gained = self.time - begun, self._speed_since_launch()
         rest = self._rest_sd * since
         variance = self._settings.wind_sd**2 + self._w - w + rest * rest + self._scale_variance * gained * gained
-        self.ports.not_risen(self._t, self.energy, kind, self._total_spikes.last, (gained, variance))
+        held = self._total_spikes.last
+        if self._differential:
+            held += self._difference.static - self._difference.zero
+        self.ports.not_risen(self._t, self.energy, kind, held, (gained, variance))
 
     def _speed_since_launch(self) -> float:
         """Return what the force has given since the launch at the filter's instant, m/s, that at rest taken off."""
@@ -505,8 +526,8 @@ class AidedFilter(Estimator):
 
     def _on_the_rail(self, end: float, longest: float = inf) -> tuple[float, float] | None:
         """Return the pair's mean difference at rest in the last seconds until `end`, and its variance."""
-        each = self._total_variance + self._static_variance
-        return rest_difference(self._rows, start=max(self._tare_end, end - longest), end=end, each=each)
+        begun = max(self._tare_end, end - longest)
+        return rest_difference(self._rows, start=begun, end=end, each=self._pair_variance)
 
     def _look_at_wind(
         self, start: float, static: float, density: float, tare_variance: float
@@ -563,7 +584,8 @@ class AidedFilter(Estimator):
             (self._total_variance + self._static_variance) / len(found) + (variance or self._noise.difference_sd**2)
         )
         excess = sum(found) / len(found) - tare
-        return excess > 0.5 * static / self._air.gas * self._storm * self._storm + UNLIKELY * spread
+        wind = hypot(STORM, self._wind.speed_declared)
+        return excess > 0.5 * static / self._air.gas * wind * wind + UNLIKELY * spread
 
     def _begin_aloft(self, start: float, t: float) -> None:
         """Begin in flight, or in a push, at an instant, s: V by the next total pressure, climb and bias not known."""
@@ -609,6 +631,7 @@ class AidedFilter(Estimator):
             difference_sd=difference_sd,
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
+            relative=self._differential,
         )
 
     def _start(self, start: float, patience: float, steady_from: float) -> None:
@@ -641,7 +664,8 @@ class AidedFilter(Estimator):
         if ports.seen_total is not None or ports.seen_static is not None:
             ports.judge(self._t, energy, self.time, self._u + self._grown)
         before, self._t = self._t, t
-        heard, given = self._heard, (p_total, p_static, temperature)
+        channel = self._difference.read(p_total, p_static) if self._differential else p_total
+        heard, given = self._heard, (channel, p_static, temperature)
         if self._coldest <= temperature <= self._warmest:
             if self._warmed > 0.0:
                 temperature /= 1.0 + 5.0 * self._warmed * energy.v * energy.v / air.heat
@@ -653,13 +677,13 @@ class AidedFilter(Estimator):
             temperature = nan
         air.at(energy.p, energy.s)
         low, high = self._total_within
-        if not low <= p_total <= high:
-            p_total = nan
+        if not low <= channel <= high:
+            channel = nan
         low, high = self._static_within
         if not low <= p_static <= high:
             p_static = nan
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
-        total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
+        total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
             ports.jumped(t, energy, (self.time, self._u + self._grown), total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
@@ -671,7 +695,7 @@ class AidedFilter(Estimator):
         late = t - self._pause
         if self._gained.newest < late or min(heard) < late or True in self._muted:
             self._listen(t, late, given, (end_total, end_static))
-        nis_total, nis_static = self._take(p_total, p_static, end_total, end_static, new_total > 0, new_static > 0)
+        nis_total, nis_static = self._take(channel, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
         if total and static and temperature > 0.0:
             difference = p_total - self._plain_tare - p_static
@@ -700,7 +724,7 @@ class AidedFilter(Estimator):
     def _take(
         self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
     ) -> tuple[float, float]:
-        """Take what is new of a reading of the head; return the normalised innovations squared."""
+        """Take what is new of a reading of the head, its channels; return the normalised innovations squared."""
         nis_total = nis_static = nan
         to, at = t_total - self._total_age, t_static - self._static_age
         if new_total and new_static and self._steady(to, at):
@@ -735,13 +759,13 @@ class AidedFilter(Estimator):
             self._push_variance = energy.know_push()
         gained, variance = self._go(to, dt)
         pushed = self._pushed(t_total)
-        tared = p_total - self._tare - self._noise.acceleration * pushed
+        tared = p_total - self._tare - self._difference.zero - self._noise.acceleration * pushed
         unknown = 0.0
         if self._wrong:
             if self._lift == self._lift:
                 self._angles.lift = self._lift
             above, off, unknown = self._off()
-            tared, p_static = tared - above, p_static - off
+            tared, p_static = tared - above + (off if self._differential else 0.0), p_static - off
         nis_static, nis_total = energy.fly(
             dt,
             gained,
@@ -759,7 +783,7 @@ class AidedFilter(Estimator):
             self._fresh = self._t
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, self._lift
-        ports.seen_total = tared, nis_total
+        ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
         return nis_total, nis_static
 
     def _feel_shock(self, to: float) -> None:
@@ -869,14 +893,23 @@ class AidedFilter(Estimator):
             self._not_risen(kind)
         return bool(kind)
 
-    def _measure(self, tared: float, variance: float, pushed: float) -> float:
+    def _of_channel(self, channel: float) -> tuple[float, float, float]:
+        """Return what the total channel says, Pa, the variance of its noise, Pa², and what it is relative to, Pa."""
+        if not self._differential:
+            return channel, self._total_variance, 0.0
+        difference = channel - self._difference.zero
+        if self.ports.static.shut:  # to both sensors: the pressure that is shut in and Δp are the total pressure
+            return difference + self._difference.static, self._total_variance + self._static_variance, 0.0
+        return difference, self._total_variance, self.energy.p
+
+    def _measure(self, tared: float, variance: float, pushed: float, relative: bool) -> float:
         """Correct the filter by a total pressure, Pa, of a variance, Pa²; on the rail it has the side wind in it."""
         energy, heat = self.energy, self._air.heat
         if not self._wind.on:
             return energy.total(tared, variance, pushed, heat)
         if self._wrong:
             variance += self._wind.unknown(energy.v, energy.p, heat)
-        return self._wind.total(energy, tared, variance, pushed, heat)
+        return self._wind.total(energy, tared, variance, pushed, heat, relative=relative)
 
     def _take_total(self, reading: float, end: float) -> float:
         energy, air = self.energy, self._air
@@ -885,34 +918,35 @@ class AidedFilter(Estimator):
             return nan
         if self._stroke.open and self._shut_in_stroke(reading):
             return nan
-        if not self._onset.settled and not self._onset.settle(energy, self.time, reading - self._tare, air):
+        read, (reading, each, base) = reading, self._of_channel(reading)
+        onset = self._onset
+        if not onset.settled and not onset.settle(energy, self.time, reading - self._tare + base, air):
             return nan
         pushed = self._pushed(end)
-        variance = self._total_variance + pushed * pushed * self._push_variance
+        variance = each + pushed * pushed * self._push_variance
         if behind > 0.0:  # the filter has taken a later one: as if V had changed by the force and the gust alone
             slope = air.density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * air.gust * abs(energy.v) * behind
         tared = reading - self._tare - self._noise.acceleration * pushed
         if self._wrong and not self._wind.on:
-            tared -= self._off()[0]
+            above, off, _ = self._off()
+            tared -= above - off if base else above
         if self.ports.total.faulty:
-            self.ports.hear_total(self._t, energy, end, reading, tared, variance)
+            self.ports.hear_total(self._t, energy, end, read, tared + base, variance)
             return nan
         on_rail = self._wind.on
-        nis = self._measure(tared, variance, pushed)
+        nis = self._measure(tared, variance, pushed, base > 0.0)
         if energy.taken:
             self._fresh = self._t
-        below = energy.p - tared > NO_SPEED * air.density * energy.v * energy.v + self._sudden
-        if (
-            not energy.taken and self.time < self._steady_from and not below
-        ):  # too early for a fault: the filter is wrong
+        below = (0.0 if base else energy.p) - tared > NO_SPEED * air.density * energy.v * energy.v + self._sudden
+        if not (energy.taken or below) and self.time < self._steady_from:  # too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.widen_speed((energy.innovation / slope) ** 2)
         if not on_rail and energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
-            self.ports.seen_total = tared, nis
+            self.ports.seen_total = read, tared + (energy.p if base else 0.0), nis
         return nis
 
     def _leave_rail(self) -> None:
@@ -980,7 +1014,8 @@ class AidedFilter(Estimator):
         if self._warmed_share > 0.0:
             warmed = self._warmed_share * speed * speed / air.heat * speed
             share = sqrt(share * share + warmed * warmed)
-        sd = sqrt(max(variance, 0.0) + share * share)
+        scale = self._scale_share * speed
+        sd = sqrt(max(variance, 0.0) + share * share + scale * scale)
         total = isentropic(speed, static, air.heat)
         ports = self.ports
         valid = (
@@ -988,6 +1023,7 @@ class AidedFilter(Estimator):
             and speed * speed <= LAW_ENDS * air.heat
             and air.measured
             and (sd < COASTED or (t - self._fresh < FRESH and not ports.total.faulty))
-            and not ports.static.faulty  # without it V and the climb are hardly told apart
+            # without it V and the climb are hardly told apart, but for a difference that has been read
+            and not (ports.static.faulty and (ports.static.shut or not self._differential))
         )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static

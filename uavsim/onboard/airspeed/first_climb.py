@@ -34,6 +34,7 @@ MOVED, MOVED_SD = 6.0, 1.5
 LIVES = 0.1  # s, for which it must have. By hand: no single spike
 # m/s: 5 m of height at 25 m/s. Unfolding and an unknown b make 0.6 in the second that it takes. By hand
 LOST = -3.0
+SUDDEN = 0.3  # m/s between two readings, which no climb takes from V. By hand
 HIGHEST = 10.0  # m of height, by which it is decided, or the flight is a level one, which tells nothing
 # m/s, standard deviation of D in the first seconds: wings that unfold, 0.6, a change of the gust, 1, an unknown b. By
 # hand
@@ -129,7 +130,11 @@ class FirstClimb:
             self._beyond += 0.0 if pushed else risen
         if pushed or self._reference == inf:
             self._reference = speed - gained
-        self.lost = lost = speed - gained - self._reference
+        lost = speed - gained - self._reference
+        if not -SUDDEN < lost - self.lost < SUDDEN:  # no climb, but a total pressure that was wrong
+            self._reference += lost - self.lost
+            lost = self.lost
+        self.lost = lost
         impact = 0.5 * density * speed * speed
         self._weigh(reading, density * GRAVITY, position * impact, position_sd * impact)
         hidden, halved = density * GRAVITY * self._height, 0.5 * density * speed

@@ -13,10 +13,11 @@ live one does not move either. That is for the stroke (`stroke`).
 
 from math import hypot, inf, isfinite, nan, sqrt
 
+from uavsim.onboard.airspeed.difference import ZERO, channel_range
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row
-from uavsim.onboard.stamps import Conversions, jump
+from uavsim.onboard.stamps import JUMP
 
 # s without a reading, after which a sensor is silent. Readings that are lost by chance, up to 7 in 10 at 100 Hz, make
 # such a pause once in 10⁸; more is a fault. By hand
@@ -36,8 +37,8 @@ WORDS = {
 
 
 def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
-    """Return between which values a total pressure, a static pressure, Pa, and a temperature, K, is a measurement."""
-    (a, b), (c, d), (e, f) = noise.total_range, noise.static_range, noise.temperature_range
+    """Return between which values a total channel, a static pressure, Pa, and a temperature, K, is a measurement."""
+    (a, b), (c, d), (e, f) = channel_range(noise), noise.static_range, noise.temperature_range
     return (
         (max(a, LEAST_PRESSURE), min(b, MOST_PRESSURE)),
         (max(c, LEAST_PRESSURE), min(d, MOST_PRESSURE)),
@@ -118,14 +119,13 @@ class RailCheck:
         Until when the head is under its cover, s; −inf without one.
     """
 
-    __slots__ = ("_count", "_first", "_noise", "_static_ends", "_sum", "_tare_end", "_total_ends", "sensors")
+    __slots__ = ("_count", "_first", "_noise", "_static_end", "_sum", "_tare_end", "_total_end", "sensors")
 
     def __init__(self, noise: NoiseModel, tare_end: float) -> None:
         self._noise, self._tare_end = noise, tare_end
         total, static, warmth = limits(noise)
         (total_row, _), (static_row, _) = rows_allowed(noise)
-        silent, longest = pause(noise), jump(noise.head_rate)
-        self._total_ends, self._static_ends = Conversions(longest), Conversions(longest)
+        silent = pause(noise)
         self.sensors = {
             "total": SensorCheck(total, silent, total_row),
             "static": SensorCheck(static, silent, static_row),
@@ -138,24 +138,27 @@ class RailCheck:
         for sensor in self.sensors.values():
             sensor.forget()
         self._first = inf
-        self._total_ends.forget()
-        self._static_ends.forget()
+        self._total_end = self._static_end = -inf
         self._sum, self._count = 0.0, 0
 
     def add(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> None:
-        """Take a row of the head."""
+        """Take a row of the head, its total channel (`difference`) in the place of the total pressure."""
         if self._first == inf:
             self._first = t
         total, static, warmth = self.sensors.values()
-        end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
-        new_static = end_static == end_static  # not NaN
-        total.add(t, p_total, end_total == end_total)
+        t_total, t_static = min(t_total, t), min(t_static, t)  # no conversion ends later than its reading
+        new_total = not self._total_end - JUMP < t_total <= self._total_end
+        new_static = not self._static_end - JUMP < t_static <= self._static_end
+        total.add(t, p_total, new_total)
         static.add(t, p_static, new_static)
         warmth.add(t, temperature, temperature == temperature or new_static)
-        if t <= self._tare_end and -inf < p_total - p_static < inf:
-            self._sum += p_total - p_static
+        self._total_end = t_total if new_total else self._total_end
+        self._static_end = t_static if new_static else self._static_end
+        difference = p_total - (ZERO if self._noise.differential else p_static)
+        if t <= self._tare_end and -inf < difference < inf:
+            self._sum += difference
             self._count += 1
 
     def decided(self, t: float) -> bool:
@@ -180,7 +183,7 @@ class RailCheck:
         if not n or not noise.difference_sd > 0.0:
             return 0.0
         mean = self._sum / n
-        sd = hypot(noise.difference_sd, hypot(noise.total_sd, noise.static_sd) / sqrt(n))
+        sd = hypot(noise.difference_sd, hypot(noise.total_sd, 0.0 if noise.differential else noise.static_sd) / sqrt(n))
         most = max(FAR * sd, LEAST_OFFSET)
         return mean if mean < -most or mean > most + (0.0 if noise.covered else STORM) else 0.0
 
