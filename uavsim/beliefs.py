@@ -122,6 +122,7 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         rail_elevation_sd=radians(scenario.flight_computer.rail_elevation_sd_deg),
         rail_roll=radians(scenario.flight_computer.rail_roll_deg),
         difference_sd=belief.drift * thin * head.difference_sd,
+        static_offset_sd=belief.drift * static.offset_sd,
         thermometer_recovery=min(1.0, head.thermometer_recovery),
         thermometer_recovery_sd=head.thermometer_recovery_sd,
         differential=head.difference is not None,

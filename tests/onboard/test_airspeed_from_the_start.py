@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from references.manoeuvres import LAUNCH, NOISE, Flight, believed, fly, run, spoil
 
-from uavsim.onboard.airspeed import AidedFilter, first_climb
+from uavsim.onboard.airspeed import AidedFilter, EstimatorSettings, first_climb
 from uavsim.onboard.airspeed.rail import RailCheck
 from uavsim.onboard.rail_offset import RailOffset
 from uavsim.onboard.readiness import Readiness
@@ -223,3 +223,64 @@ def test_a_dead_accelerometer_is_not_ready(force, word):
     assert said is not None
     assert len(said) == (0 if word is None else 1)
     assert word is None or (word in said[0] and said[0].startswith("accelerometer"))
+
+
+def test_a_stamp_of_the_far_future_silences_no_sensor_on_the_rail():
+    """One conversion that ends in ten years: the others are new all the same."""
+    check = RailCheck(NOISE, 4.0)
+    for row in fly(replace(FLIGHT, duration=0.5), 9604).air.tolist():
+        if 1.0 < row[0] < 1.015:
+            row[4] = row[5] = 3e8
+        check.add(*row)
+        assert check.broken(row[0]) == {}
+
+
+def test_an_airspeed_on_a_rail_is_not_valid_before_the_launch():
+    """10 m/s of wind after a covered tare; without a rail, in a tunnel, it is valid; 40 m/s are no wind."""
+    for rail, wind, valid in ((0.2, 10.0, False), (None, 10.0, True), (0.2, 40.0, True)):
+        part = AidedFilter(EstimatorSettings(), replace(NOISE, rail_elevation=rail), (0.0, 1.0))
+        draw = np.random.default_rng(9605)
+        for k in range(1, 300):
+            t = 0.01 * k
+            above = 0.6125 * wind**2 if t > 1.0 else 0.0
+            total, static = draw.normal(101_325.0, NOISE.total_sd, 2)
+            estimate = part.step(t, total + above, static, 288.15, t, t)
+        assert estimate[6] is valid
+        assert estimate[1] == pytest.approx(wind, rel=0.05)
+
+
+def test_a_static_port_in_level_flight_is_not_doubted_for_ever():
+    """30 m/s off a rail of 12°, then level: seconds later nothing is hidden. One that climbs unseen is shut."""
+    for climbs in (False, True):
+        test = first_climb.FirstClimb()
+        test.begin(101_325.0, 2.0, 0.2)
+        shut = False
+        for k in range(600):
+            speed = min(30.0, 100.0 * 0.01 * k)
+            climbed = 6.0 * max(0.0, 0.01 * k - 0.3) if climbs else 0.0
+            lost = -2.0 * 9.81 * climbed / 30.0
+            shut = shut or test.add(
+                101_325.0, 0.01, speed + lost, speed, 1.2, k < 30, ground=speed, position=0.0, position_sd=0.0
+            )
+            if shut:
+                break
+        assert shut is climbs
+        assert test.hidden == 0.0
+        assert not test.open
+
+
+@pytest.mark.parametrize(("rises", "named"), [(False, True), (True, False)])
+def test_a_gust_that_takes_4_m_per_s_condemns_no_static_port_that_has_risen(rises, named):
+    """0.7 m up the rail, 8 Pa: less than what a mean of readings of 6 Pa must have moved, but each of them tells."""
+    test = first_climb.FirstClimb()
+    test.begin(101_325.0, 6.0, 0.2)
+    draw, height, found = np.random.default_rng(9606), 0.0, False
+    for k in range(50):
+        speed = min(26.0, float(k))
+        height += 0.0019 * speed * (k < 26) * rises
+        reading = 101_325.0 - 1.2 * 9.81 * height + draw.normal(0.0, 6.0)
+        told = speed - 0.25 * min(16, max(0, k - 30))
+        found = found or test.add(
+            reading, 0.01, told, speed, 1.2, k < 26, ground=speed, position=0.0, position_sd=0.0
+        )  # fmt: skip
+    assert found is named

@@ -27,6 +27,7 @@ a bias that comes and goes with the push: when the mean force f changes, b gains
 scale error's standard deviation.
 
 **Valid** is an airspeed from 8 σ_V on. That is 2 V* of the pressures' law (`paper`), and it also holds while coasting.
+On a rail none is valid before the launch is recognised.
 
 **When the filter ends.** Beyond all bounds it has diverged, and the pressures alone are filtered, as before the launch.
 A step of a clock (`uavsim.onboard.stamps`) ends it, too. It then begins anew in flight, with V from the pressures, as
@@ -90,6 +91,9 @@ ANYWHERE, AROUND = 3e4, 1e3
 
 # s, and readings of the head, from the start on, by which it is judged whether the aircraft rests on its rail. By hand
 AT_FIRST, FIRST_ROWS = 0.05, 5
+# m/s, speed over the ground up to which a push has not begun: V may change by what is learned of the wind. By hand: a
+# tenth of any launch's
+BEGUN = 3.0
 IN_PUSH = 30.0  # m/s², mean force at the start of a replay that is a push: three times what any rest has. By hand
 STORM = 25.0  # m/s, a wind beyond which nobody launches: 12 Beaufort are 33
 UNLIKELY = 5.0  # standard deviations of the pair's difference beside it
@@ -108,6 +112,9 @@ SUDDEN, SUDDEN_SD = 100.0, 15.0
 # Pa/s that are granted beside: ρ V V̇ at 60 m/s and 40 m/s², or a dive at 250 m/s; in the stroke ρ V V̇ at 80 m/s and
 # 500 m/s²
 STEEP, STROKE = 3e3, 5e4
+# share of ρV², beside `SUDDEN`, by which a total pressure may be below the static one, and still tell that the filter
+# is wrong; a lower one is of no airspeed. By hand: four times what ports of a UAV are off by
+NO_SPEED = 0.2
 # standard deviations of the accelerometer's offset, by which a reading of a plausible force may be beyond its bound.
 # Beyond it a reading is a missing one. By hand: the usual three
 FARTHEST = 3.0
@@ -168,13 +175,13 @@ class AidedFilter(Estimator):
         "_air", "_angles", "_apart", "_base", "_coldest", "_difference", "_differential", "_fastest", "_first_climb",
         "_flight_force", "_force", "_fresh", "_gained", "_gated", "_grown", "_head", "_heard", "_lift", "_longest",
         "_muted", "_noise", "_on_rail", "_onset", "_pair_variance", "_pause", "_plain", "_plain_tare", "_position",
-        "_position_share", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd", "_rows",
-        "_scale_share", "_scale_variance", "_settings", "_shock", "_stamps", "_start_wind", "_static_age",
-        "_static_ends", "_static_spikes", "_static_variance", "_static_within", "_steady_from", "_steps", "_stroke",
-        "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_throttle", "_total_age", "_total_ends",
-        "_total_spikes", "_total_variance", "_total_within", "_u", "_unfolding", "_w", "_waiting", "_warmed",
-        "_warmed_share", "_warmest", "_warmth", "_wind", "_wind_known", "_wrong", "energy", "flying", "news", "ports",
-        "time",
+        "_position_share", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd",
+        "_rows", "_scale_share", "_scale_variance", "_settings", "_shock", "_stamps", "_start_wind", "_static_age",
+        "_static_ends", "_static_share", "_static_spikes", "_static_variance", "_static_within", "_steady_from",
+        "_steps", "_stroke", "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_throttle",
+        "_total_age", "_total_ends", "_total_spikes", "_total_variance", "_total_within", "_u", "_unfolding", "_w",
+        "_waiting", "_warmed", "_warmed_share", "_warmest", "_warmth", "_wind", "_wind_known", "_wrong", "energy",
+        "flying", "news", "ports", "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -196,7 +203,7 @@ class AidedFilter(Estimator):
         self._difference, self._differential = Difference(noise.differential), noise.differential
         self._scale_share = 0.5 * noise.difference_scale_sd
         self._scale_variance = noise.accelerometer_scale_sd**2 + self._scale_share**2
-        self._temperature_share = 0.5 * noise.temperature_sd
+        self._temperature_share, self._static_share = 0.5 * noise.temperature_sd, 0.5 * noise.static_offset_sd
         self._warmed_share = 0.5 * noise.thermometer_recovery_sd
         self._on_rail = aided.on_rail
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
@@ -293,9 +300,18 @@ class AidedFilter(Estimator):
         if estimate is None:
             return None
         self._rows.append((t, p_total, p_static, temperature, t_total, t_static))
-        if estimate[6] and (t < self._gated < inf or self._rail.broken(t)):
+        if estimate[6] and (t < self._gated < inf or self._of_rail(estimate[1]) or self._rail.broken(t)):
             return (*estimate[:6], False, *estimate[7:])
         return estimate
+
+    def _of_rail(self, speed: float) -> bool:
+        """Whether an airspeed of the pressures alone, m/s, may be that of the wind on a rail.
+
+        What is read there is no airspeed of a flight: an open tare holds the wind, and after a cover the filter still
+        runs in. It begins with the launch. A launch that is missed is known by what no wind can be.
+        """
+        on_rail = self._noise.rail_elevation is not None and self._gated == inf
+        return on_rail and speed < hypot(STORM, self._wind.speed_declared)
 
     def doubts(self, t: float) -> tuple[str, ...] | None:
         """Why the head is not ready to be launched; see `Estimator.doubts`."""
@@ -436,6 +452,7 @@ class AidedFilter(Estimator):
     def _climbed(self, reading: float, before: float) -> None:
         """Judge by a static pressure, Pa, whether its port lives; the last one was of a time `before`, s."""
         test, energy, density = self._first_climb, self.energy, self._air.density
+        ground = self._speed_since_launch()
         if self.ports.total.faulty or self.ports.static.faulty:
             test.open, test.hidden = False, 0.0
         elif test.add(
@@ -444,8 +461,8 @@ class AidedFilter(Estimator):
             energy.v,
             self._u,
             density,
-            self._push_end.lasts,
-            ground=self._speed_since_launch(),
+            self._push_end.lasts or self._wind.on or ground < BEGUN,
+            ground=ground,
             position=self._position,
             position_sd=2.0 * self._position_share,
         ):
@@ -507,9 +524,10 @@ class AidedFilter(Estimator):
         self._angles.forget()
         return core
 
-    def _on_the_rail(self, end: float) -> tuple[float, float] | None:
-        """Return the pair's mean difference at rest until `end`, s, the head being open, and its variance."""
-        return rest_difference(self._rows, start=self._tare_end, end=end, each=self._pair_variance)
+    def _on_the_rail(self, end: float, longest: float = inf) -> tuple[float, float] | None:
+        """Return the pair's mean difference at rest in the last seconds until `end`, and its variance."""
+        begun = max(self._tare_end, end - longest)
+        return rest_difference(self._rows, start=begun, end=end, each=self._pair_variance)
 
     def _look_at_wind(
         self, start: float, static: float, density: float, tare_variance: float
@@ -518,10 +536,12 @@ class AidedFilter(Estimator):
         air, noise = self._air, self._noise
         self._onset.know()
         tared = noise.covered and self._tare_end > -inf
-        seen = self._on_the_rail(start)
+        # A gust of the tare is over when the aircraft is launched. What is read last has the wind in it that the filter
+        # begins in, so that the errors of both go together
+        seen = self._on_the_rail(start, 2.0 * AGO)
         if tared and seen is not None:
             seen = seen[0] - self._tare, seen[1] + tare_variance
-        elif not tared and self._tare_end > -inf:
+        elif not tared and self._tare_end > -inf and seen is None:
             seen = self._waiting.tare()
             seen = seen if seen[1] > 0.0 else None
         gusts = air.gust * max(self._wind.speed_declared, SLOWEST) * AGO
@@ -563,8 +583,8 @@ class AidedFilter(Estimator):
         spread = sqrt(
             (self._total_variance + self._static_variance) / len(found) + (variance or self._noise.difference_sd**2)
         )
-        wind = hypot(STORM, self._wind.speed_declared)
         excess = sum(found) / len(found) - tare
+        wind = hypot(STORM, self._wind.speed_declared)
         return excess > 0.5 * static / self._air.gas * wind * wind + UNLIKELY * spread
 
     def _begin_aloft(self, start: float, t: float) -> None:
@@ -919,7 +939,8 @@ class AidedFilter(Estimator):
         nis = self._measure(tared, variance, pushed, base > 0.0)
         if energy.taken:
             self._fresh = self._t
-        if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
+        below = (0.0 if base else energy.p) - tared > NO_SPEED * air.density * energy.v * energy.v + self._sudden
+        if not (energy.taken or below) and self.time < self._steady_from:  # too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)
             energy.widen_speed((energy.innovation / slope) ** 2)
         if not on_rail and energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
@@ -982,6 +1003,9 @@ class AidedFilter(Estimator):
             variance += hidden * hidden
         variance += self.ports.between
         share = self._temperature_share * speed / air.temperature
+        if self._static_share > 0.0:
+            dense = self._static_share * speed / static
+            share = sqrt(share * share + dense * dense)
         if self._wrong:
             position = self._position_share * speed
             if self._wind.on and speed > SLOWEST:

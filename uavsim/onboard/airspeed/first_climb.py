@@ -19,6 +19,8 @@ low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what
 
 Until it has shown life, what it may hide is in the bar: ρ g h with the h that the rail's elevation gives, as far as
 `HIGHEST`, or what D says, times √P_shut: the standard deviation of an error that is there with the probability P_shut.
+D limits the h of the rail, too: what is hidden is −½ ρ V D, and D is known to `LOSS_SD`. Where D has stayed above
+`LEVEL` for `SETTLES` after the aircraft should have been at `HIGHEST`, it flies level: an open port need not move.
 """
 
 from math import exp, inf, log, sin, sqrt
@@ -34,6 +36,12 @@ LIVES = 0.1  # s, for which it must have. By hand: no single spike
 LOST = -3.0
 SUDDEN = 0.3  # m/s between two readings, which no climb takes from V. By hand
 HIGHEST = 10.0  # m of height, by which it is decided, or the flight is a level one, which tells nothing
+# m/s, standard deviation of D in the first seconds: wings that unfold, 0.6, a change of the gust, 1, an unknown b. By
+# hand
+LOSS_SD = 1.5
+# m/s, and s: a climb of 1.5 m at 30 m/s in the 4 s since the rail makes −1. Where V is so great that the 10 m make less
+# than −2, half of theirs. A port that is shut in level flight shows in the next climb (`frozen`). By hand
+LEVEL, SETTLES = -1.0, 2.0
 # nats: one port in a thousand is shut before a launch, by hand: a crew looks. Between the bounds a wrong turn can be
 # taken back within some readings
 PRIOR, LEAST_ODDS, MOST_ODDS = -7.0, -16.0, 5.0
@@ -59,20 +67,21 @@ class FirstClimb:
     """
 
     __slots__ = (
-        "_beyond", "_height", "_mean", "_moved_for", "_need", "_odds", "_reference", "_slope", "_variance", "hidden",
-        "lost", "open", "rest",
+        "_beyond", "_height", "_level_for", "_mean", "_moved_for", "_need", "_odds", "_reference", "_slope",
+        "_variance", "hidden", "lost", "open", "rest",
     )  # fmt: skip
 
     def __init__(self) -> None:
         self.open = False
         self.hidden = self.lost = self.rest = self._mean = self._height = self._moved_for = self._slope = 0.0
+        self._level_for = 0.0
         self._need, self._reference, self._beyond, self._odds, self._variance = inf, 0.0, 0.0, PRIOR, 1.0
 
     def begin(self, rest: float, sd: float, elevation: float) -> None:
         """Begin on the rail: its pressure, Pa, the noise of a reading, Pa, and its elevation, rad."""
         self.open = True
         self.rest = self._mean = rest
-        self.hidden = self.lost = self._height = self._moved_for = 0.0
+        self.hidden = self.lost = self._height = self._moved_for = self._level_for = 0.0
         self._need, self._slope = max(MOVED, MOVED_SD * sd), sin(elevation) if elevation > 0.0 else 0.0
         self._reference, self._beyond, self._odds, self._variance = inf, 0.0, PRIOR, sd * sd
 
@@ -128,14 +137,24 @@ class FirstClimb:
         self.lost = lost
         impact = 0.5 * density * speed * speed
         self._weigh(reading, density * GRAVITY, position * impact, position_sd * impact)
-        hidden = density * GRAVITY * self._height
+        hidden, halved = density * GRAVITY * self._height, 0.5 * density * speed
+        if not pushed:
+            hidden = min(hidden, halved * (max(0.0, -lost) + LOSS_SD))
         if lost < 0.0:
-            hidden = max(hidden, -0.5 * density * speed * lost)
+            hidden = max(hidden, -halved * lost)
         self.hidden = hidden / sqrt(1.0 + exp(-self._odds))
-        if lost < LOST:
+        shut = lost < LOST and self._odds > PRIOR - SAID  # a gust can lose as much while the readings speak for life
+        if shut or self._flies_level(dt, speed):
             self.open, self.hidden = False, 0.0
-            return True
-        return False
+        return shut
+
+    def _flies_level(self, dt: float, speed: float) -> bool:
+        """Whether the force has shown for long enough that the aircraft has not climbed as its rail points."""
+        if self._height >= HIGHEST and self.lost > LEVEL and self.lost * speed > -GRAVITY * HIGHEST:
+            self._level_for += dt
+        else:
+            self._level_for = 0.0
+        return self._level_for >= SETTLES
 
     def _weigh(self, reading: float, weight: float, error: float, error_sd: float) -> None:
         """Weigh a shut port against an open one by a reading, Pa, in air of ρ g, Pa/m; both of the errors in Pa."""

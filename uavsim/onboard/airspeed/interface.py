@@ -82,6 +82,8 @@ class NoiseModel:
         Roll of the aircraft on it, rad.
     difference_sd : float
         What the pair's difference may be at rest where no tare has found it, Pa.
+    static_offset_sd : float
+        What both pressures are off by together, Pa: the tare does not find it, and the density has it.
     covered : bool
         Whether the head is under its cover in the tare's window; else the tare is taken in the wind.
     head : HeadErrors
@@ -131,6 +133,7 @@ class NoiseModel:
     rail_elevation_sd: Annotated[float, Interval(ge=0.0, le=1.6)] = 0.0087
     rail_roll: Annotated[float, Interval(ge=-3.2, le=3.2)] = 0.0
     difference_sd: Annotated[float, Ge(0.0)] = 0.0
+    static_offset_sd: Annotated[float, Ge(0.0)] = 0.0
     covered: bool = True
     head: HeadErrors = NO_ERRORS
     thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
