@@ -27,7 +27,7 @@ from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
 from uavsim.onboard.airspeed.lift import Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
-from uavsim.onboard.airspeed.readmission import Readmission
+from uavsim.onboard.airspeed.readmission import MUTE, Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.smooth import LEVEL, SmoothTest
 from uavsim.onboard.repeats import LEAST, apart
@@ -66,7 +66,6 @@ LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried
 AGREE_SD = 5.0 / 3.0
 
 # kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
-MUTE = ("silent", "invalid", "range")  # and there was nothing to take
 UNTAKEN = ("jump", *MUTE)
 ASTRAY = ("drift", "leak", "jump")
 # kinds after which it must show the gusts that are declared: a port that is shut and leaks moves, but shows none
@@ -161,6 +160,7 @@ class TotalWatch:
         reading: float,
         nis: float,
         air: Air,
+        raw: float,
     ) -> str:
         """Take a reading that the filter has taken; return what seems to be wrong, as `PortMonitor.add`.
 
@@ -175,6 +175,8 @@ class TotalWatch:
         nis : float
             Normalised innovation squared.
         air : Air
+        raw : float
+            The reading as it came, Pa.
         """
         port, dt, v = self.port, t - self._t, energy.v
         if dt > GAP:
@@ -210,7 +212,7 @@ class TotalWatch:
                 return "leak"
         elif wanders:
             return "leak"
-        return port.add(reading, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
+        return port.add(raw, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
     def _wanders(self, v: float, gained: float, lost: float, dt: float) -> bool:
         """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away."""
@@ -264,7 +266,7 @@ class TotalWatch:
         """
         self.coasts = kind not in MUTE
         if not self.coasts:  # the filter goes on as it is
-            self.port.back.flag(now[0], mute=True)
+            self.port.back.flag(now[0], kind=kind)
             self.faulty, self._astray, self._silent, self.undecided = True, False, False, False
             return
         test = self.port.frozen
@@ -283,7 +285,7 @@ class TotalWatch:
         if kind == "frozen":
             self.port.back.flag(t, test.held, test.held_variance)
         else:
-            self.port.back.flag(t)
+            self.port.back.flag(t, kind=kind)
         self.faulty, self._astray = True, kind in ASTRAY
         self._silent = self._declared and kind in GUSTLESS
         self._smooth.flag(t)
@@ -367,7 +369,7 @@ class StaticWatch:
         """Whether it may stand still. In still air it is too early then to blame the total port."""
         return self._test.evidence > DOUBTFUL
 
-    def take(self, t: float, reading: float, lift: float, density: float) -> str:
+    def take(self, t: float, reading: float, lift: float, density: float, raw: float) -> str:
         """Take a reading; return what is wrong with the port, "frozen" or "stuck"; "" for nothing.
 
         Parameters
@@ -380,8 +382,10 @@ class StaticWatch:
             Mean of −f_z since the last one, m/s²; NaN where it is not known, and the port is not tested.
         density : float
             Of the air, kg/m³.
+        raw : float
+            The reading as it came, Pa.
         """
-        if self._back.repeats(reading):
+        if self._back.repeats(raw):
             return "stuck"
         if not -inf < lift < inf:
             return ""
@@ -397,7 +401,7 @@ class StaticWatch:
         test = self._test
         self.faulty = True
         if kind != "frozen":
-            self._back.flag(t, mute=kind in MUTE)
+            self._back.flag(t, kind=kind)
             return
         self._back.flag(t, test.held, test.held_variance)
         weight, v = density * GRAVITY, max(energy.v, 1.0)
@@ -428,9 +432,9 @@ class StaticWatch:
             unseen=UNSEEN,
         )
 
-    def coast(self, t: float, reading: float, difference: float, spread: float) -> bool:
+    def coast(self, t: float, reading: float, pressure: float, difference: float, spread: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
-        if not self._back.hear(t, reading, reading, difference, spread):
+        if not self._back.hear(t, reading, pressure, difference, spread):
             return False
         self.faulty, self._t = False, -inf
         return True
