@@ -25,7 +25,7 @@ from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
-from uavsim.onboard.airspeed.lift import Pull
+from uavsim.onboard.airspeed.lift import TURN, Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
 from uavsim.onboard.airspeed.readmission import MUTE, Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
@@ -57,6 +57,9 @@ RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
 TURNS = (
     2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
 )
+# 1/m·m/s², of x = n²/V²: a c that is 5 m off is 0.4 m/s² then, 4 m/s in 10 s. A turn at 40° and 32 m/s has it. By hand;
+# the scenario `manoeuvres` holds the check
+UNTURNED = 0.08
 LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried on after a leak. By hand, as `UNSEEN`
 
 # -- the way back ------------------------------------------------------------------------------------------------------
@@ -121,7 +124,7 @@ class TotalWatch:
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
         "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
-        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "coasts", "faulty",
+        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering", "coasts", "faulty",
         "port", "undecided",
     )  # fmt: skip
 
@@ -146,7 +149,7 @@ class TotalWatch:
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
-        self._near, self._taught = 0, 0.0
+        self._near, self._taught, self._turn = 0, 0.0, 0.0
         self._pull, self._gust_variance = Pull(), aided.gust_sd**2
         self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
@@ -202,7 +205,7 @@ class TotalWatch:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
         wandering = self._wandering
-        wanders = self._wanders(v, change - energy.s * dt, test.lost, dt)
+        wanders = self._wanders(v, change - energy.s * dt, test.lost, lift, dt)
         if self._declared:
             straight = self._pull.size < TURNS and t > self._opened
             smooth = self._smooth.add(reading, dt, test.nis, test.spread, straight)
@@ -214,13 +217,25 @@ class TotalWatch:
             return "leak"
         return port.add(raw, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
-    def _wanders(self, v: float, gained: float, lost: float, dt: float) -> bool:
-        """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away."""
+    def _wanders(self, v: float, gained: float, lost: float, lift: float, dt: float) -> bool:
+        """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away.
+
+        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. x goes by the airspeed of the
+        force, for a port that leaks must not look like slow flight. Where c matters too much, it is learnt anew.
+        """
         wandering = self._wandering
+        forced = v - wandering.gust
+        forced = forced if forced > LEAST_FLIGHT else LEAST_FLIGHT
+        turn = lift * lift / (forced * forced)
+        if not -UNTURNED < turn - self._turn < UNTURNED:
+            wandering.forget()
+            self._taught = self._taught if self._taught < RELEARNT else RELEARNT
         if dt > 0.0 and (wandering.near or self._taught < LEARNT):
             self._taught += dt
-            self._lost += (lost - self._lost) * dt / (self._taught if self._taught < SLOW else SLOW)
-        away = wandering.add(v, v - self._last, gained - self._lost * dt, dt)
+            share = dt / (self._taught if self._taught < SLOW else SLOW)
+            self._lost += (lost - self._lost) * share
+            self._turn += (turn - self._turn) * share
+        away = wandering.add(v, v - self._last, gained - (self._lost + TURN * (turn - self._turn)) * dt, dt)
         self._last = v
         return away
 
