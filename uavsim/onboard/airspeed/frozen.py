@@ -99,7 +99,8 @@ class FrozenTest:
     nis, spread : float
         ν²/S and S, Pa², of the last reading.
     lost, lost_variance : float
-        b + c x at the last reading, what f_x then was off by, m/s², and its variance.
+        b + c x at the last reading, in still air with the mean x of `EASE`: what f_x then was off by, m/s², and its
+        variance.
     """
 
     __slots__ = (
@@ -211,6 +212,8 @@ class FrozenTest:
         self._c += kc * innovation
         self._pp, self._pb, self._pc = pp - kp * pp, pb - kp * pb, pc - kp * pc
         self._bb, self._bc, self._cc = bb - kb * pb, bc - kb * pc, cc - kc * pc
+        if not self._declared:
+            turn = self._turned  # a moment's n is not what V will be carried on with
         self.lost = self._b + self._c * turn
         self.lost_variance = self._bb + turn * (2.0 * self._bc + turn * self._cc)
         if evidence > 0.0:

@@ -41,6 +41,10 @@ NOTHING: Kept = (-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 # s between what is kept of V, and how many of them: V goes back 2 s. By hand; drifts are flagged within 2 s
 # (docs/faults.md, leak-gusts and slow-leak-calm)
 PACE, KEPT = 0.5, 5
+# s before the last instant at which a live port was the better explanation. In still air a port that has just shut is
+# that for some tenths of a second, in which b is learnt from it. By hand; docs/faults.md, blocked-descent: without it b
+# was 0.4 m/s² off, and V 6 m/s in 10 s
+EARLIER = 1.0
 # m/s, u: what a port may have been off by before its test began to doubt it. By hand; docs/faults.md holds the check:
 # after a flag 95 % of the valid estimates are within their error bars, but for a leak as slow as a gust
 UNSEEN = 0.5
@@ -286,12 +290,15 @@ class TotalWatch:
             return
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
+        self.undecided = kind == "frozen" and not self._declared and t - trusted[0] > SLOWLY
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
             before = self._before[0]
             if kind == "leak":
                 before = self._rough if self._smooth.evidence > LEVEL else self._sound
             if before is not NOTHING:
                 trusted = before
+        elif kind == "frozen" and not self._declared:
+            trusted = self._earlier(trusted)
         if kind in UNTAKEN or trusted is NOTHING:  # the filter has taken nothing of it
             trusted = t, gained, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
         then, u, v, vv, p, self._bias, bb = trusted
@@ -304,7 +311,6 @@ class TotalWatch:
         self.faulty, self._astray = True, kind in ASTRAY
         self._silent = self._declared and kind in GUSTLESS
         self._smooth.flag(t)
-        self.undecided = kind == "frozen" and not self._declared and since > SLOWLY
         v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
@@ -312,6 +318,12 @@ class TotalWatch:
             vv += self._gust_variance
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
+
+    def _earlier(self, trusted: Kept) -> Kept:
+        """What is kept of `EARLIER` before an instant: in still air the force tells V well enough from there on."""
+        if self._opened - REOPENED > trusted[0] - EARLIER:  # b was another then
+            return trusted
+        return next((kept for kept in reversed(self._before) if -inf < kept[0] <= trusted[0] - EARLIER), trusted)
 
     def flag_in_stroke(
         self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
