@@ -302,7 +302,7 @@ def test_a_bias_that_the_push_may_have_left_is_no_slide():
 
 
 def test_a_number_that_repeats_itself_is_not_taken_back():
-    """However it agrees, and however long a live sensor of coarse steps may repeat one; another number takes it back."""
+    """However it agrees, and however long a live one of coarse steps may repeat one; another number takes it back."""
     back = Readmission(1.0, 0.01, row=1000)
     back.flag(0.0, kind="stuck")
     assert not any(back.hear(0.01 * k, 1e5, 1e5, 0.0, 1.0) for k in range(900))

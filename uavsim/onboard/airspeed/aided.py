@@ -648,10 +648,8 @@ class AidedFilter(Estimator):
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
         if self._first_climb.open and new_static > 0:
             self._climbed(p_static, heard[1])
-        if new_total > 0:
-            heard[0], ports.raw_total = t, p_total
-        if new_static > 0:
-            heard[1], ports.raw_static = t, p_static
+        heard[0], ports.raw_total = (t, p_total) if new_total > 0 else (heard[0], ports.raw_total)
+        heard[1], ports.raw_static = (t, p_static) if new_static > 0 else (heard[1], ports.raw_static)
         late = t - self._pause
         if self._gained.newest < late or min(heard) < late or True in self._muted:
             self._listen(t, late, given, (end_total, end_static))

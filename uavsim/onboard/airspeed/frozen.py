@@ -212,8 +212,7 @@ class FrozenTest:
         self._c += kc * innovation
         self._pp, self._pb, self._pc = pp - kp * pp, pb - kp * pb, pc - kp * pc
         self._bb, self._bc, self._cc = bb - kb * pb, bc - kb * pc, cc - kc * pc
-        if not self._declared:
-            turn = self._turned  # a moment's n is not what V will be carried on with
+        turn = turn if self._declared else self._turned  # V is not carried on with a moment's n
         self.lost = self._b + self._c * turn
         self.lost_variance = self._bb + turn * (2.0 * self._bc + turn * self._cc)
         if evidence > 0.0:
@@ -225,6 +224,5 @@ class FrozenTest:
             self.count += 1
         else:
             self.held, self.held_variance = self.pressure + 2.0 * static, self._pp
-            self.evidence = self.misfit = 0.0
-            self.count = 0
+            self.evidence, self.misfit, self.count = 0.0, 0.0, 0
         return self.evidence

@@ -47,8 +47,21 @@ class Readmission:
     """
 
     __slots__ = (
-        "_agreed", "_heard", "_held", "_held_variance", "_last", "_most", "_returned", "_stirred", "_trapped",
-        "_stuck", "_variance", "_wait", "_walk", "faulty", "same",
+        "_agreed",
+        "_heard",
+        "_held",
+        "_held_variance",
+        "_last",
+        "_most",
+        "_returned",
+        "_stirred",
+        "_stuck",
+        "_trapped",
+        "_variance",
+        "_wait",
+        "_walk",
+        "faulty",
+        "same",
     )  # fmt: skip
 
     def __init__(self, variance: float, walk: float, row: float = LEAST) -> None:

@@ -128,8 +128,8 @@ class TotalWatch:
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
         "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
-        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering", "coasts", "faulty",
-        "port", "undecided",
+        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering", "coasts",
+        "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -224,8 +224,8 @@ class TotalWatch:
     def _wanders(self, v: float, gained: float, lost: float, lift: float, dt: float) -> bool:
         """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away.
 
-        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. x goes by the airspeed of the
-        force, for a port that leaks must not look like slow flight. Where c matters too much, it is learnt anew.
+        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. x goes by the airspeed of
+        the force, for a port that leaks must not look like slow flight. Where c matters too much, it is learnt anew.
         """
         wandering = self._wandering
         forced = v - wandering.gust
