@@ -299,3 +299,11 @@ def test_a_bias_that_the_push_may_have_left_is_no_slide():
     watch.jump(0.3, pushed)
     assert watch._bias_variance(2.0) == pytest.approx(0.09 + pushed * (math.exp(-0.8) + math.exp(-0.68)), rel=1e-6)
     assert watch._bias_variance(60.0) == pytest.approx(0.09, rel=1e-6)
+
+
+def test_a_number_that_repeats_itself_is_not_taken_back():
+    """However it agrees, and however long a live one of coarse steps may repeat one; another number takes it back."""
+    back = Readmission(1.0, 0.01, row=1000)
+    back.flag(0.0, kind="stuck")
+    assert not any(back.hear(0.01 * k, 1e5, 1e5, 0.0, 1.0) for k in range(900))
+    assert any(back.hear(9.0 + 0.01 * k, 1e5 + k % 7, 1e5, 0.0, 1.0) for k in range(120))

@@ -33,13 +33,15 @@ class LeakTest:
     ----------
     way : float
         D, m.
+    gust : float
+        G, m/s.
     near : bool
         Whether G is a usual gust, so that what the port says is sound.
     large : bool
         Whether it is one of two standard deviations, so that a port that shows no other gusts leaks.
     """
 
-    __slots__ = ("_far", "_gust", "_large", "_length", "_near", "large", "near", "way")
+    __slots__ = ("_far", "_large", "_length", "_near", "gust", "large", "near", "way")
 
     def __init__(self, sd: float, length: float) -> None:
         sd = max(sd, LEAST_SD)
@@ -48,7 +50,7 @@ class LeakTest:
 
     def forget(self) -> None:
         """Begin without a gust."""
-        self._gust, self.way, self.near, self.large = 0.0, 0.0, True, False
+        self.gust, self.way, self.near, self.large = 0.0, 0.0, True, False
 
     def add(self, speed: float, change: float, gained: float, dt: float) -> bool:
         """Take the airspeed, m/s, by how much it and what the force gave have changed, m/s, in a time, s.
@@ -58,7 +60,7 @@ class LeakTest:
         bool
             Whether it is no gust.
         """
-        gust = self._gust = self._gust * (1.0 - dt * speed / self._length) + change - gained
+        gust = self.gust = self.gust * (1.0 - dt * speed / self._length) + change - gained
         size = gust if gust > 0.0 else -gust
         self.near, self.large = size < self._near, size > self._large
         way = self.way + (size - self._far) * dt

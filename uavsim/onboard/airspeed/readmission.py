@@ -7,7 +7,7 @@ It agrees when its readings fit the coasting filter for a second. That second do
 ten.
 """
 
-from math import inf
+from math import inf, nan
 
 from uavsim.onboard.repeats import LEAST
 
@@ -22,6 +22,7 @@ FEW = 5  # parts of that row. After the first it may be a beginning, and no othe
 # s: how long a port must agree, how soon after its return a flag doubles that, and the most that it must. By hand;
 # docs/faults.md, column "taken back"
 RETURN, SOON, LONGEST = 1.0, 10.0, 60.0
+MUTE = ("silent", "invalid", "range")  # kinds of which there was nothing to take
 BACK = 0.1  # s, the same after silence: ten readings. By hand
 
 
@@ -46,19 +47,33 @@ class Readmission:
     """
 
     __slots__ = (
-        "_agreed", "_heard", "_held", "_held_variance", "_last", "_most", "_returned", "_stirred", "_trapped",
-        "_variance", "_wait", "_walk", "faulty", "same",
+        "_agreed",
+        "_heard",
+        "_held",
+        "_held_variance",
+        "_last",
+        "_most",
+        "_returned",
+        "_stirred",
+        "_stuck",
+        "_trapped",
+        "_variance",
+        "_wait",
+        "_walk",
+        "faulty",
+        "same",
     )  # fmt: skip
 
     def __init__(self, variance: float, walk: float, row: float = LEAST) -> None:
         self._most = row
         self._variance, self._walk = variance, WANDER * walk * walk
-        self.faulty = self._trapped = False
+        self.faulty = self._trapped = self._stuck = False
         self._wait, self._returned, self._agreed, self._heard = RETURN, -inf, inf, -inf
-        self._held = self._held_variance = self._stirred = self._last = 0.0
+        self._held = self._held_variance = self._stirred = 0.0
+        self._last = nan
         self.same = 0
 
-    def flag(self, t: float, held: float = 0.0, held_variance: float = inf, mute: bool = False) -> None:
+    def flag(self, t: float, held: float = 0.0, held_variance: float = inf, kind: str = "") -> None:
         """Flag the port.
 
         Parameters
@@ -67,10 +82,13 @@ class Readmission:
             s.
         held, held_variance : float
             The pressure that is shut in, Pa, and its variance, Pa², if it is shut.
-        mute : bool
-            Whether nothing came of it: then it is back when readings come that agree.
+        kind : str
+            What was wrong. If nothing came of it, it is back when readings come that agree; if it repeated one number,
+            it has to say another one first, however long a live one may repeat itself.
         """
+        mute = kind in MUTE
         self._wait = min(2.0 * self._wait, LONGEST) if t - self._returned < SOON else BACK if mute else RETURN
+        self._stuck = kind == "stuck"
         self.faulty, self._agreed, self._stirred, self._heard = True, inf, 0.0, t
         self._trapped, self._held, self._held_variance = held_variance < inf, held, held_variance
 
@@ -84,6 +102,8 @@ class Readmission:
         if reading == self._last:
             self.same += 1
             return self.same >= self._most
+        if self._last == self._last:
+            self._stuck = False
         self._last, self.same = reading, 0
         return False
 
@@ -102,7 +122,7 @@ class Readmission:
         repeats = self.repeats(reading)
         if self._trapped:
             self._stir(t, pressure)
-        if self._trapped or repeats or difference * difference > AGREE * spread:
+        if self._trapped or self._stuck or repeats or difference * difference > AGREE * spread:
             self._agreed = inf
             return False
         if self._agreed == inf:

@@ -25,9 +25,9 @@ from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
-from uavsim.onboard.airspeed.lift import Pull
+from uavsim.onboard.airspeed.lift import TURN, Pull
 from uavsim.onboard.airspeed.monitor import PortMonitor
-from uavsim.onboard.airspeed.readmission import Readmission
+from uavsim.onboard.airspeed.readmission import MUTE, Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.smooth import LEVEL, SmoothTest
 from uavsim.onboard.repeats import LEAST, apart
@@ -41,6 +41,10 @@ NOTHING: Kept = (-inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 # s between what is kept of V, and how many of them: V goes back 2 s. By hand; drifts are flagged within 2 s
 # (docs/faults.md, leak-gusts and slow-leak-calm)
 PACE, KEPT = 0.5, 5
+# s before the last instant at which a live port was the better explanation. In still air a port that has just shut is
+# that for some tenths of a second, in which b is learnt from it. By hand; docs/faults.md, blocked-descent: without it b
+# was 0.4 m/s² off, and V 6 m/s in 10 s
+EARLIER = 1.0
 # m/s, u: what a port may have been off by before its test began to doubt it. By hand; docs/faults.md holds the check:
 # after a flag 95 % of the valid estimates are within their error bars, but for a leak as slow as a gust
 UNSEEN = 0.5
@@ -57,6 +61,9 @@ RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
 TURNS = (
     2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
 )
+# 1/m·m/s², of x = n²/V²: a c that is 5 m off is 0.4 m/s² then, 4 m/s in 10 s. A turn at 40° and 32 m/s has it. By hand;
+# the scenario `manoeuvres` holds the check
+UNTURNED = 0.08
 LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried on after a leak. By hand, as `UNSEEN`
 
 # -- the way back ------------------------------------------------------------------------------------------------------
@@ -66,7 +73,6 @@ LOST_SD = 0.2  # m/s², standard deviation of that mean, with which V is carried
 AGREE_SD = 5.0 / 3.0
 
 # kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
-MUTE = ("silent", "invalid", "range")  # and there was nothing to take
 UNTAKEN = ("jump", *MUTE)
 ASTRAY = ("drift", "leak", "jump")
 # kinds of a static port that is shut, to both sensors of a head that has a differential one; others are of its sensor
@@ -126,8 +132,8 @@ class TotalWatch:
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
         "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
-        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_u", "_wandering", "coasts", "faulty",
-        "port", "undecided",
+        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering", "coasts",
+        "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -154,7 +160,7 @@ class TotalWatch:
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
-        self._near, self._taught = 0, 0.0
+        self._near, self._taught, self._turn = 0, 0.0, 0.0
         self._pull, self._gust_variance = Pull(), aided.gust_sd**2
         self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
@@ -208,7 +214,7 @@ class TotalWatch:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
         wandering = self._wandering
-        wanders = self._wanders(v, change - energy.s * dt, test.lost, dt)
+        wanders = self._wanders(v, change - energy.s * dt, test.lost, lift, dt)
         if self._declared:
             straight = self._pull.size < TURNS and t > self._opened
             smooth = self._smooth.add(reading, dt, test.nis, test.spread, straight)
@@ -220,13 +226,25 @@ class TotalWatch:
             return "leak"
         return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
-    def _wanders(self, v: float, gained: float, lost: float, dt: float) -> bool:
-        """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away."""
+    def _wanders(self, v: float, gained: float, lost: float, lift: float, dt: float) -> bool:
+        """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away.
+
+        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. x goes by the airspeed of
+        the force, for a port that leaks must not look like slow flight. Where c matters too much, it is learnt anew.
+        """
         wandering = self._wandering
+        forced = v - wandering.gust
+        forced = forced if forced > LEAST_FLIGHT else LEAST_FLIGHT
+        turn = lift * lift / (forced * forced)
+        if not -UNTURNED < turn - self._turn < UNTURNED:
+            wandering.forget()
+            self._taught = self._taught if self._taught < RELEARNT else RELEARNT
         if dt > 0.0 and (wandering.near or self._taught < LEARNT):
             self._taught += dt
-            self._lost += (lost - self._lost) * dt / (self._taught if self._taught < SLOW else SLOW)
-        away = wandering.add(v, v - self._last, gained - self._lost * dt, dt)
+            share = dt / (self._taught if self._taught < SLOW else SLOW)
+            self._lost += (lost - self._lost) * share
+            self._turn += (turn - self._turn) * share
+        away = wandering.add(v, v - self._last, gained - (self._lost + TURN * (turn - self._turn)) * dt, dt)
         self._last = v
         return away
 
@@ -272,17 +290,20 @@ class TotalWatch:
         """
         self.coasts = kind not in MUTE
         if not self.coasts:  # the filter goes on as it is
-            self.port.back.flag(now[0], mute=True)
+            self.port.back.flag(now[0], kind=kind)
             self.faulty, self._astray, self._silent, self.undecided = True, False, False, False
             return
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
+        self.undecided = kind == "frozen" and not self._declared and t - trusted[0] > SLOWLY
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
             before = self._before[0]
             if kind == "leak":
                 before = self._rough if self._smooth.evidence > LEVEL else self._sound
             if before is not NOTHING:
                 trusted = before
+        elif kind == "frozen" and not self._declared:
+            trusted = self._earlier(trusted)
         if kind in UNTAKEN or trusted is NOTHING:  # the filter has taken nothing of it
             trusted = t, gained, energy.v, energy.vv, energy.p, test.lost, test.lost_variance
         then, u, v, vv, p, self._bias, bb = trusted
@@ -291,11 +312,10 @@ class TotalWatch:
         if kind == "frozen":
             self.port.back.flag(t, test.held, test.held_variance)
         else:
-            self.port.back.flag(t)
+            self.port.back.flag(t, kind=kind)
         self.faulty, self._astray = True, kind in ASTRAY
         self._silent = self._declared and kind in GUSTLESS
         self._smooth.flag(t)
-        self.undecided = kind == "frozen" and not self._declared and since > SLOWLY
         v = v + gained - u - self._bias * since + (energy.p - p) / slope
         bb = min(bb, self._bias_sd * self._bias_sd)
         vv = vv + gust * speed * since + bb * since * since + UNSEEN * UNSEEN + energy.pp / (slope * slope)
@@ -303,6 +323,12 @@ class TotalWatch:
             vv += self._gust_variance
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
+
+    def _earlier(self, trusted: Kept) -> Kept:
+        """What is kept of `EARLIER` before an instant: in still air the force tells V well enough from there on."""
+        if self._opened - REOPENED > trusted[0] - EARLIER:  # b was another then
+            return trusted
+        return next((kept for kept in reversed(self._before) if -inf < kept[0] <= trusted[0] - EARLIER), trusted)
 
     def flag_in_stroke(
         self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
@@ -375,7 +401,7 @@ class StaticWatch:
         """Whether it may stand still. In still air it is too early then to blame the total port."""
         return self._test.evidence > DOUBTFUL
 
-    def take(self, t: float, reading: float, lift: float, density: float) -> str:
+    def take(self, t: float, reading: float, lift: float, density: float, raw: float) -> str:
         """Take a reading; return what is wrong with the port, "frozen" or "stuck"; "" for nothing.
 
         Parameters
@@ -388,8 +414,10 @@ class StaticWatch:
             Mean of −f_z since the last one, m/s²; NaN where it is not known, and the port is not tested.
         density : float
             Of the air, kg/m³.
+        raw : float
+            The reading as it came, Pa.
         """
-        if self._back.repeats(reading):
+        if self._back.repeats(raw):
             return "stuck"
         if not -inf < lift < inf:
             return ""
@@ -405,7 +433,7 @@ class StaticWatch:
         test = self._test
         self.faulty, self.shut = True, kind in SHUT_IN
         if kind != "frozen":
-            self._back.flag(t, mute=kind in MUTE)
+            self._back.flag(t, kind=kind)
             return
         self._back.flag(t, test.held, test.held_variance)
         weight, v = density * GRAVITY, max(energy.v, 1.0)
@@ -436,9 +464,9 @@ class StaticWatch:
             unseen=UNSEEN,
         )
 
-    def coast(self, t: float, reading: float, difference: float, spread: float) -> bool:
+    def coast(self, t: float, reading: float, pressure: float, difference: float, spread: float) -> bool:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
-        if not self._back.hear(t, reading, reading, difference, spread):
+        if not self._back.hear(t, reading, pressure, difference, spread):
             return False
         self.faulty, self.shut, self._t = False, False, -inf
         return True
