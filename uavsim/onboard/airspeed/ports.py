@@ -104,7 +104,8 @@ class Ports:
         offset, lift_offset = noise.accelerometer_offset_sd, noise.lift_offset_sd
         total, static = rows_allowed(noise)
         self.total = TotalWatch(self._aided, self._total_variance, noise.walk, *total, offset, white)
-        self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset)
+        gusts = self._aided.gust_sd > self._aided.gust_floor
+        self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset, gusts)
         self._lift, self.misses, self.torn, self.between = GRAVITY, 0, False, 0.0
         self.raw_total = self.raw_static = nan
         self.forget_seen()
