@@ -25,10 +25,11 @@ Order of errors
     Each term has a factor or a switch in the settings, and a term that is off or new changes no draw of another.
 
 One description, two readers
-    `preset("lsm6dso32")` is an `AccelerometerDescription`, `preset("bmp390")` a `PressureDescription`: frozen numbers
-    of which the simulator draws a unit and a filter takes its noise model. Settings (`AccelerometerSettings`,
-    `AirDataSettings`) say what a scenario may choose; their `description()` is the part as chosen. What follows from
-    both for the readings, the drawn unit left out, is in `sensors.knowledge`.
+    `preset("lsm6dso32")` is an `AccelerometerDescription`, `preset("bmp390")` a `PressureDescription`,
+    `preset("ms4525do")` a `DifferentialDescription`: frozen numbers of which the simulator draws a unit and a filter
+    takes its noise model. Settings (`AccelerometerSettings`, `AirDataSettings`) say what a scenario may choose; their
+    `description()` is the part as chosen. What follows from both for the readings, the drawn unit left out, is in
+    `sensors.knowledge`.
 
 Randomness
     `Streams(seed, index)` gives each source of noise its own named stream: adding one leaves all others as they were.
@@ -51,12 +52,19 @@ if TYPE_CHECKING:
     from sensors.bench import record_at_rest
     from sensors.bench_log import read_bench_log
     from sensors.catalogue import preset, presets
+    from sensors.differential_description import DifferentialDescription
     from sensors.head import AirDataHead, membranes
     from sensors.knowledge import AccelerometerKnowledge, HeadKnowledge, known_of_accelerometer, known_of_head
     from sensors.pressure import PressureSensor
     from sensors.pressure_description import PressureDescription, PressureErrors, PressureMode
     from sensors.promise import promised
-    from sensors.settings import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
+    from sensors.settings import (
+        AccelerometerSettings,
+        AirDataSettings,
+        DifferentialSettings,
+        PressureSettings,
+        VibrationSettings,
+    )
     from sensors.streams import Streams
     from sensors.vibration import Vibration
 
@@ -68,6 +76,8 @@ __all__ = [
     "AccelerometerSettings",
     "AirDataHead",
     "AirDataSettings",
+    "DifferentialDescription",
+    "DifferentialSettings",
     "HeadKnowledge",
     "PressureDescription",
     "PressureErrors",
@@ -95,6 +105,8 @@ _HOME = {
     "AccelerometerSettings": "settings",
     "AirDataHead": "head",
     "AirDataSettings": "settings",
+    "DifferentialDescription": "differential_description",
+    "DifferentialSettings": "settings",
     "HeadKnowledge": "knowledge",
     "PressureDescription": "pressure_description",
     "PressureErrors": "pressure_description",

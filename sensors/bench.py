@@ -2,7 +2,8 @@
 
 At rest an accelerometer feels the push of the bench, upwards: with z down its specific force is (0, 0, -g0), so the
 z axis reads -9.80665 m/s². A pressure sensor on a bench is not soldered to a board yet and its membrane feels no
-acceleration worth the name. The readings are, bit for bit, those of the device that flies.
+acceleration worth the name. Both ports of a differential one are open. The readings are, bit for bit, those of the
+device that flies.
 """
 
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ from sensors.accelerometer import Accelerometer
 from sensors.accelerometer_description import AccelerometerDescription
 from sensors.catalogue import Description, preset
 from sensors.choice import choose
+from sensors.differential_description import DifferentialDescription
 from sensors.pressure import PressureSensor
 from sensors.pressure_description import PressureErrors
 from sensors.streams import Streams
@@ -165,7 +167,8 @@ def _endless(description: Description, streams: Streams, unit: Unit) -> Iterator
         yield from Accelerometer(description, streams, unit=unit).at_rest((0.0, 0.0, -G0))
     else:
         sensor = PressureSensor(description, streams, unit=unit)
-        for end, pressure, temperature in sensor.at_rest(PRESSURE, REFERENCE_TEMPERATURE):
+        at = 0.0 if isinstance(description, DifferentialDescription) else PRESSURE
+        for end, pressure, temperature in sensor.at_rest(at, REFERENCE_TEMPERATURE):
             yield np.column_stack((end, pressure, temperature))
 
 

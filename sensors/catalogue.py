@@ -7,6 +7,7 @@ is read by the same code.
 """
 
 import os
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,11 +17,18 @@ from sensors.accelerometer_description import AccelerometerDescription, micro_g
 from sensors.choice import choose, shown
 from sensors.data_files import parse_toml, read_text
 from sensors.datasheet_check import check
+from sensors.differential_description import DifferentialDescription
 from sensors.pressure_description import PressureDescription, PressureMode, pair
 from sensors.sheet import Sheet
 from sensors.unit import Triple
 
-Description = AccelerometerDescription | PressureDescription
+Description = AccelerometerDescription | PressureDescription | DifferentialDescription
+
+_KINDS: dict[type[Description], str] = {
+    AccelerometerDescription: "an accelerometer",
+    PressureDescription: "a pressure sensor",
+    DifferentialDescription: "a differential pressure sensor",
+}
 
 FOLDER = Path(__file__).parent / "datasheets"
 
@@ -41,7 +49,7 @@ def preset(name: str) -> Description:
 
     Returns
     -------
-    AccelerometerDescription or PressureDescription
+    AccelerometerDescription, PressureDescription or DifferentialDescription
 
     Raises
     ------
@@ -79,17 +87,29 @@ def accelerometer(name: str) -> AccelerometerDescription:
     description = preset(name)
     if isinstance(description, AccelerometerDescription):
         return description
-    allowed = _of_kind(AccelerometerDescription)
-    raise ValueError(f"preset {shown(name)} is a pressure sensor, not an accelerometer; allowed: {allowed}")
+    raise _other(name, description, AccelerometerDescription)
 
 
 def pressure_sensor(name: str) -> PressureDescription:
-    """Return the description of a pressure sensor, by its name or path; ValueError if `name` is none."""
+    """Return the description of an absolute pressure sensor, by its name or path; ValueError if `name` is none."""
     description = preset(name)
-    if isinstance(description, PressureDescription):
+    if isinstance(description, PressureDescription) and not isinstance(description, DifferentialDescription):
         return description
-    allowed = _of_kind(PressureDescription)
-    raise ValueError(f"preset {shown(name)} is an accelerometer, not a pressure sensor; allowed: {allowed}")
+    raise _other(name, description, PressureDescription)
+
+
+def differential_sensor(name: str) -> DifferentialDescription:
+    """Return the description of a differential pressure sensor, by its name or path; ValueError if `name` is none."""
+    description = preset(name)
+    if isinstance(description, DifferentialDescription):
+        return description
+    raise _other(name, description, DifferentialDescription)
+
+
+def _other(name: str, found: Description, wanted: type[Description]) -> ValueError:
+    """Return the error of a part of another kind than the one that is wanted."""
+    allowed = ", ".join(part for part in presets() if type(preset(part)) is wanted)
+    return ValueError(f"preset {shown(name)} is {_KINDS[type(found)]}, not {_KINDS[wanted]}; allowed: {allowed}")
 
 
 def read(path: Path) -> Description:
@@ -120,8 +140,7 @@ def _described(name: str, text: str) -> Description:
     sheet = parse_toml(text)
     check(sheet)
     document = f"{sheet['part']}: {sheet['document']}"
-    build = _accelerometer if sheet["kind"] == "accelerometer" else _pressure
-    return build(name, document, sheet)
+    return _BUILD[sheet["kind"]](name, document, sheet)
 
 
 def path_of(name: str) -> Path:
@@ -161,18 +180,38 @@ def _densities(row: list[float]) -> Triple:
 
 def _pressure(name: str, document: str, sheet: dict[str, Any]) -> PressureDescription:
     v = sheet["values"]
-    modes = tuple(_mode(mode) for mode in sheet["modes"])
     return PressureDescription(
         name=name,
         document=document,
-        modes=modes,
-        mode=modes[0],
-        iir_weights=tuple(zip(v["iir_coefficients"], map(float, v["iir_weights"]), strict=True)),
-        iir=0,
-        range=pair(v["range_pa"]),
         reference_pressure=float(v["reference_pressure_pa"]),
+        iir_weights=tuple(zip(v["iir_coefficients"], map(float, v["iir_weights"]), strict=True)),
+        **_settings(sheet),
         **term.read(PressureDescription, v),
     ).select(mode=v["default_mode"])
+
+
+def _differential(name: str, document: str, sheet: dict[str, Any]) -> DifferentialDescription:
+    v = sheet["values"]
+    return DifferentialDescription(
+        name=name,
+        document=document,
+        reference_pressure=0.0,
+        iir_weights=((0, 1.0),),
+        **_settings(sheet),
+        **term.read(DifferentialDescription, v),
+    ).select(mode=v["default_mode"])
+
+
+def _settings(sheet: dict[str, Any]) -> dict[str, Any]:
+    """Return what a pressure sensor can be set to, and its range."""
+    v = sheet["values"]
+    modes = tuple(_mode(mode) for mode in sheet["modes"])
+    return {
+        "modes": modes,
+        "mode": modes[0],
+        "iir": 0,
+        "range": pair(v["range_pa"]),
+    }
 
 
 def _mode(mode: dict[str, Any]) -> PressureMode:
@@ -186,5 +225,8 @@ def _mode(mode: dict[str, Any]) -> PressureMode:
     )
 
 
-def _of_kind(kind: type[Description]) -> str:
-    return ", ".join(name for name in presets() if isinstance(preset(name), kind))
+_BUILD: dict[str, Callable[[str, str, dict[str, Any]], Description]] = {
+    "accelerometer": _accelerometer,
+    "pressure": _pressure,
+    "differential": _differential,
+}

@@ -6,6 +6,7 @@ the modes of a pressure sensor; the terms of its errors say theirs where they ar
 """
 
 from sensors.accelerometer_description import AccelerometerDescription
+from sensors.differential_description import DifferentialDescription
 from sensors.pressure_description import PressureDescription
 from sensors.rules import Rule, listed, number, text, whole
 from sensors.term import rules
@@ -40,6 +41,14 @@ PRESSURE: dict[str, Rule] = {
     "iir_weights": listed(number(1e-4, 1.0, above=0.0)),  # 1e-4 takes 10 000 readings to follow; parts have 1/128
     "reference_pressure_pa": PRESSURE_PA,
     **rules(PressureDescription),
+}
+
+DIFFERENCE_PA = number(-1e6, 1e6)  # Pa: 10 bar, fifty times what Mach 1 gives at sea level
+
+DIFFERENTIAL: dict[str, Rule] = {
+    "default_mode": NAMES,
+    "range_pa": listed(DIFFERENCE_PA, count=2, rising=True),
+    **rules(DifferentialDescription),
 }
 
 MODE: dict[str, Rule] = {

@@ -8,6 +8,8 @@ each in one line that names the key:
     limit ≥ standard deviation          a unit beyond the limit is drawn again: below it that would not end
     offset, and that of 100 K, ≤ range  a unit that is off by more shows nothing
     101 325 Pa within the range         where every part is put on the bench, and most flights begin
+    0 Pa within it                      of a differential part: no airspeed
+    a flow, and where it bends          go together
     conversion time ≤ 1/rate            a conversion ends before the next one begins
     0 < weight a ≤ 1                    y += a (x - y) follows its input
 """
@@ -18,12 +20,13 @@ from typing import Any
 
 from sensors.accelerometer_description import AccelerometerDescription
 from sensors.choice import choose, nearest, shown
-from sensors.datasheet_bounds import ACCELEROMETER, MODE, NAMES, PRESSURE, SENTENCE
+from sensors.datasheet_bounds import ACCELEROMETER, DIFFERENTIAL, MODE, NAMES, PRESSURE, SENTENCE
+from sensors.differential_description import DifferentialDescription
 from sensors.pressure_description import PressureDescription
 from sensors.rules import Rule, listed, table, text
 from sensors.term import optional
 
-KINDS = ("accelerometer", "pressure")
+KINDS = ("accelerometer", "pressure", "differential")
 HEAD_KEYS = ("kind", "part", "document", "values", "sources")
 
 TEMPERATURES = 100.0  # K, between the coldest and the warmest that a sensor sees
@@ -34,7 +37,12 @@ UNITS = {"g": "g", "mg": "mg", "ug": "µg", "percent": "%", "hz": "Hz", "pa": "P
 NOT_IN_THE_NAME = {"correlation_time": "s", "scale": "a fraction", "scale_limit": "a fraction", "bits": "bit"}
 OTHER_SUFFIXES = ("hpa", "kpa", "mbar", "bar", "khz", "ppm", "fraction", "s", "us", "c", "degc", "mps2", "ms2", "m")
 
-OPTIONAL = optional(AccelerometerDescription), optional(PressureDescription)  # keys that a file may lack
+RULES = {"accelerometer": ACCELEROMETER, "pressure": PRESSURE, "differential": DIFFERENTIAL}
+OPTIONAL = {  # keys that a file may lack
+    "accelerometer": optional(AccelerometerDescription),
+    "pressure": optional(PressureDescription),
+    "differential": optional(DifferentialDescription),
+}
 
 TOLD = 3  # unknown keys that are told one by one
 
@@ -58,26 +66,31 @@ def check(sheet: dict[str, Any]) -> None:
     if "kind" not in sheet:
         raise ValueError("key kind is missing")
     NAMES("kind", sheet["kind"])
-    pressure = choose("kind", sheet["kind"], KINDS) == "pressure"
-    _check_keys(sheet, PRESSURE if pressure else ACCELEROMETER, pressure=pressure)
+    kind = choose("kind", sheet["kind"], KINDS)
+    pressure = kind != "accelerometer"
+    _check_keys(sheet, kind)
     text(SENTENCE)("part", sheet["part"])
     text(SENTENCE)("document", sheet["document"])
     values = sheet["values"]
-    _entries("values.", values, PRESSURE if pressure else ACCELEROMETER)
+    _entries("values.", values, RULES[kind])
     for mode in sheet["modes"] if pressure else ():
         _entries("modes.", mode, MODE)
     for key, source in sheet["sources"].items():
         text(SENTENCE)(f"sources.{key}", source)
     _limits(values)
     if pressure:
-        _fits_pressure(values, sheet["modes"])
-    else:
+        _fits_modes(values, sheet["modes"])
+    if kind == "accelerometer":
         _fits_accelerometer(values)
+    elif kind == "pressure":
+        _fits_pressure(values)
+    else:
+        _fits_differential(values)
 
 
-def _check_keys(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool) -> None:
+def _check_keys(sheet: dict[str, Any], kind: str) -> None:
     """Name all keys that are missing, and those that are unknown."""
-    places = list(_places(sheet, rules, pressure=pressure))
+    places = list(_places(sheet, kind))
     missing = [f"{p.prefix}{key}{p.where}" for p in places for key in p.wanted if key not in p.found]
     unknown = [(p.prefix, key, p.allowed) for p in places for key in p.found if key not in p.allowed]
     said = [_unknown(*each) for each in unknown[:TOLD]]
@@ -90,14 +103,15 @@ def _check_keys(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool
         raise ValueError("; ".join(said))
 
 
-def _places(sheet: dict[str, Any], rules: dict[str, Rule], *, pressure: bool) -> Iterator[Place]:
+def _places(sheet: dict[str, Any], kind: str) -> Iterator[Place]:
     """Yield the tables of a file that are there."""
+    rules, pressure = RULES[kind], kind != "accelerometer"
     head = (*HEAD_KEYS, "modes") if pressure else HEAD_KEYS
     yield Place("", sheet, head, head)
     values, modes, sources = sheet.get("values", {}), sheet.get("modes", []), sheet.get("sources", {})
     table("values", values)
     table("sources", sources)
-    wanted = [key for key in rules if key not in OPTIONAL[pressure]]
+    wanted = [key for key in rules if key not in OPTIONAL[kind]]
     misspelt = any(key not in head for key in sheet)  # perhaps a table that is missing
     if "values" in sheet or not misspelt:
         yield Place("values.", values, wanted, rules)
@@ -198,7 +212,7 @@ def _bandwidths(name: str, rates: list[float], row: list[float]) -> None:
         raise ValueError(f"key values.bandwidth_hz is 0 at every rate for filter {shown(name)}: leave the filter out")
 
 
-def _fits_pressure(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
+def _fits_modes(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
     names = [mode["name"] for mode in modes]
     _unlike("modes.name", names)
     choose("key values.default_mode:", v["default_mode"], names)
@@ -208,6 +222,16 @@ def _fits_pressure(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
                 f"key modes.conversion_ms of mode {shown(mode['name'])}, {mode['conversion_ms']:g} ms, is longer than "
                 f"the period of its rate, {1000.0 / mode['rate']:g} ms"
             )
+    low, high = v["range_pa"]
+    for mode in modes:
+        if mode["resolution_pa"] > high - low:
+            raise ValueError(f"key modes.resolution_pa of mode {shown(mode['name'])} is wider than range_pa")
+    least, greatest = v.get("solder_pa", (0.0, 0.0))
+    if least > greatest:
+        raise ValueError("key values.solder_pa must have the least shift first")
+
+
+def _fits_pressure(v: dict[str, Any]) -> None:
     if len(v["iir_weights"]) != len(v["iir_coefficients"]):
         raise ValueError("key values.iir_weights needs one entry for each of iir_coefficients")
     if v["iir_coefficients"][0] != 0 or v["iir_weights"][0] != 1:
@@ -216,14 +240,16 @@ def _fits_pressure(v: dict[str, Any], modes: list[dict[str, Any]]) -> None:
     if not low <= STANDARD_PRESSURE <= high:
         span = f"{low:g} to {high:g} Pa"
         raise ValueError(f"key values.range_pa, {span}, does not hold {STANDARD_PRESSURE:g} Pa, the air's at sea level")
-    for mode in modes:
-        if mode["resolution_pa"] > high - low:
-            raise ValueError(f"key modes.resolution_pa of mode {shown(mode['name'])} is wider than range_pa")
     if not low <= v["reference_pressure_pa"] <= high:
         raise ValueError("key values.reference_pressure_pa is outside range_pa")
-    least, greatest = v.get("solder_pa", (0.0, 0.0))
-    if least > greatest:
-        raise ValueError("key values.solder_pa must have the least shift first")
+
+
+def _fits_differential(v: dict[str, Any]) -> None:
+    low, high = v["range_pa"]
+    if not low <= 0.0 < high:
+        raise ValueError(f"key values.range_pa, {low:g} to {high:g} Pa, does not hold 0 Pa and what is above it")
+    if v.get("flow_kg", 0.0) > 0.0 and "flow_pressure_pa" not in v:
+        raise ValueError("key values.flow_pressure_pa is missing: a flow needs the pressure at which it bends")
 
 
 def _unlike(where: str, names: list[str]) -> None:

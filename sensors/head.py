@@ -5,6 +5,12 @@
     p_s ──╂─┬─ position error ── line ── + n·f ───── static ─ conversion ──┴── (t, p_total, p_static, T, t_total,
             └─ bay                                   thermometer                t_static)
 
+A head of kind "differential" has a differential sensor between the two lines in the place of the total sensor; what it
+makes of p_t − p_s is in `sensors.differential`. Its row has the same columns: p_total is the static reading plus the
+difference's, and t_total the end of the difference's conversion. So whoever takes two pressures can take it, and
+p_total − p_static is the difference as it was read. While the static sensor gives NaN, the difference stands on what it
+gave last.
+
 The sensors run freely, so the two values of a row are of different instants and as old as their clocks make them:
 t_total and t_static are the ends of the conversions carried, and a value that is polled again has the same. Under the
 cover both ports feel the static pressure, wind or not, for the whole flight if it is left on. Swapped tubes bring each
@@ -25,11 +31,19 @@ part, and a pressure that is no number spoils the windows it is in and no others
 from math import inf, nan
 
 from sensors.clock import Clock
+from sensors.differential import Response, passing
 from sensors.faults import value_faults
 from sensors.pneumatics import Line
 from sensors.pressure import PressureSensor
 from sensors.probe import static_port, total_port
-from sensors.settings import AirDataSettings, PortFault, PressureSettings, ThermalSettings, TubeSettings
+from sensors.settings import (
+    AirDataSettings,
+    DifferentialSettings,
+    PortFault,
+    PressureSettings,
+    ThermalSettings,
+    TubeSettings,
+)
 from sensors.streams import Streams
 from sensors.surroundings import Air, Flow, Surroundings
 from sensors.unit import Batch, Triple, Unit
@@ -48,7 +62,7 @@ class AirDataHead:
     ----------
     settings : AirDataSettings
     streams : Streams
-        Streams "{name}.total. …", "{name}.static. …" and "{name}.poll" are used.
+        Streams "{name}.total. …" or "{name}.differential. …", "{name}.static. …" and "{name}.poll" are used.
     surroundings : Surroundings, optional
         The air; without it there is no number to read.
     dt : float
@@ -67,6 +81,7 @@ class AirDataHead:
     due : float
         Time of the next poll, s.
     total, static : PressureSensor
+        The first is the differential one where the head is of that kind.
     covered_until : float
     surroundings : Surroundings or None
         Both may be set during a flight.
@@ -78,10 +93,10 @@ class AirDataHead:
     """
 
     __slots__ = (
-        "_dt", "_lines", "_membranes", "_next_poll", "_open", "_recovery", "_settings", "_static_error",
-        "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature", "_thermometer",
-        "_told_temperature", "_total_error", "_total_felt", "_total_truth", "covered_until", "due", "full", "static",
-        "surroundings", "total",
+        "_dt", "_last_static", "_lines", "_membranes", "_next_poll", "_open", "_ports", "_recovery", "_response",
+        "_settings", "_static_error", "_static_felt", "_static_truth", "_steps_per_second", "_t", "_temperature",
+        "_thermometer", "_told_temperature", "_total_error", "_total_felt", "_total_truth", "covered_until", "due",
+        "full", "static", "surroundings", "total",
     )  # fmt: skip
 
     def __init__(
@@ -98,8 +113,15 @@ class AirDataHead:
         self._settings = settings
         forward, down = settings.normals()
         alike = Batch.drawn(settings.batch, streams, f"{name}.batch")
-        self.total = _sensor(settings.total, forward, settings.thermal, streams, unit, f"{name}.total", alike)
-        self.static = _sensor(settings.static, down, settings.thermal, streams, unit, f"{name}.static", alike)
+        first, second = settings.sensors()
+        self._response: Response | None = None
+        if isinstance(first, DifferentialSettings):
+            both = (tube for tube, _ in settings.tubes())
+            self._response = Response(first.description(), both, reversed=first.polarity == "reversed")
+        self._last_static = nan
+        channel = "total" if self._response is None else "differential"
+        self.total = _sensor(first, forward, settings.thermal, streams, unit, f"{name}.{channel}", alike)
+        self.static = _sensor(second, down, settings.thermal, streams, unit, f"{name}.static", alike)
         self._thermometer = value_faults(settings.thermometer_faults, streams, f"{name}.thermometer")
         self._told_temperature = nan
         self.covered_until = inf if settings.cover_left_on else covered_until
@@ -118,10 +140,13 @@ class AirDataHead:
         felt = settings.acceleration_sensitivity
         self._membranes = (*self.total.acceleration, *self.static.acceleration) if felt else (0.0,) * 6
         ports = not (self._total_error is None and self._static_error is None)
-        behind = self._lines != (None, None) or any(self._membranes)
+        behind = self._lines != (None, None) or any(self._membranes) or settings.swapped_tubes
         self.full = behind or (ports and not hasattr(surroundings, "flow_at"))
         of_total, of_static = (self._total_read, self._static_read) if ports else (self._total_port, self._static_port)
-        self._total_truth = self._mean_of_total if self.full else of_total
+        self._ports = of_total, of_static
+        self._total_truth = (
+            self._mean_of_total if self.full else of_total if self._response is None else self._difference
+        )
         self._static_truth = self._mean_of_static if self.full else of_static
         self._lines = None
 
@@ -144,6 +169,8 @@ class AirDataHead:
         fx, fy, fz = force
         if not self._open or t < self.covered_until:
             total, static = self._behind(t, flow, force)
+        if self._response is not None:
+            total = self._response(total - static, static, self._temperature)
         tx, ty, tz, sx, sy, sz = self._membranes
         felt = self._total_felt
         felt.append(total + tx * fx + ty * fy + tz * fz)
@@ -171,6 +198,10 @@ class AirDataHead:
         while t <= until:
             p_total, _, t_total = self.total.read(t, self._total_truth)
             p_static, temperature, t_static = self.static.read(t, self._static_truth)
+            if self._response is not None:
+                if p_static == p_static:
+                    self._last_static = p_static
+                p_total += self._last_static
             if self._thermometer is not None:
                 temperature = self._told(t, temperature)
             rows.append((t, p_total, p_static, temperature, t_total, t_static))
@@ -189,6 +220,12 @@ class AirDataHead:
     def _total_port(self, t: float) -> tuple[float, float]:
         p_total, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
         return (p_static if t < self.covered_until else p_total), temperature
+
+    def _difference(self, t: float) -> tuple[float, float]:
+        of_total, of_static = self._ports
+        (total, temperature), (static, _) = of_total(t), of_static(t)
+        assert self._response is not None
+        return self._response(total - static, static, temperature), temperature
 
     def _static_port(self, t: float) -> tuple[float, float]:
         p_total, p_static, temperature = NO_AIR if self.surroundings is None else self.surroundings.air(t)
@@ -261,7 +298,8 @@ class AirDataHead:
         if total_line is not None:
             total = total_line.step(t, total, p_static, temperature, force)
         if static_line is not None:
-            static = static_line.step(t, static, p_static, temperature, force)
+            bay = p_static if self._response is None or not self._response.passes else total
+            static = static_line.step(t, static, bay, temperature, force)
         return (static, total) if self._settings.swapped_tubes else (total, static)
 
     def _connect(self, pressure: float, temperature: float) -> tuple[Line | None, Line | None]:
@@ -273,8 +311,10 @@ class AirDataHead:
             return Line(tube, direction, faults, self._dt, pressure=pressure, temperature=temperature)
 
         total, static = s.tubes()
-        both = s.port_faults
-        return line(*total, s.total_port.faults + both), line(*static, s.static_port.faults + both)
+        of_total, of_static = s.total_port.faults + s.port_faults, s.static_port.faults + s.port_faults
+        if self._response is not None and self._response.passes:
+            of_total, of_static = passing(of_total), passing(of_static)
+        return line(*total, of_total), line(*static, of_static)
 
 
 def no_flow(_t: float) -> Flow:
@@ -283,7 +323,7 @@ def no_flow(_t: float) -> Flow:
 
 
 def _sensor(
-    settings: PressureSettings,
+    settings: PressureSettings | DifferentialSettings,
     normal: Triple,
     thermal: ThermalSettings,
     streams: Streams,

@@ -9,12 +9,16 @@ description holds:
 * A tube of length L along the unit vector n, from the port to the sensor, holds a column of air that a specific force f
   presses on the sensor with −ρ L n·f.
 * What a board heats itself by nobody has measured: it counts as a deviation of the thermometer.
+* Of what the flow through a thermal differential part loses in the tubes a quarter is not known: two figures for where
+  the flow bends, 59 and 101 Pa, are that far apart.
 """
 
 from dataclasses import dataclass, replace
 from math import exp, hypot, inf, sqrt
 
 from sensors.accelerometer_description import AccelerometerDescription
+from sensors.differential import hose, share_lost
+from sensors.differential_description import DifferentialDescription
 from sensors.mounting import attitude, product, transposed
 from sensors.pneumatics import GAMMA, GAS_CONSTANT, STANDARD, laminar_lag
 from sensors.pressure_description import PressureDescription
@@ -34,6 +38,8 @@ WARMTH_SD = 15.0  # K, of a die about 25 °C beside its own heat: -20 … 70 °C
 PLACE = 2e4  # Pa, between a place and where a part's accuracy is stated: 70 … 110 kPa are within one of them
 LAPSE, CLIMB = 0.0065, 3.0  # K/m of the standard atmosphere; m/s, of an aircraft that climbs to its cruise
 FLIGHT = 30.0  # s between tare and end for which a ramp of the temperature is covered by a random walk
+TYPICAL = 600.0  # Pa, at which the share is taken that the tubes lose: 31 m/s at sea level
+LOST_SD = 0.25  # of what they lose; see above
 CALIBRATED = 1e-3  # of q_c, what a calibration of a head against a reference tube leaves: 0.05 % of the airspeed
 CALIBRATED_SHARE = 0.1  # what it leaves of what angles and propeller make
 RECOVERY_SD = 0.1  # of a thermometer's recovery factor, which is read off a table
@@ -130,6 +136,29 @@ class PressureKnowledge:
 
 
 @dataclass(frozen=True, slots=True)
+class DifferenceKnowledge:
+    """What may be believed of a differential sensor beside what any pressure sensor has.
+
+    Attributes
+    ----------
+    scale_sd : float
+        Scale error of the difference, a fraction: the part's, and what is not known of the tubes' loss.
+    calibration_pressure : float
+        Of a thermal part, as of `DifferentialDescription`, Pa; 0 of a membrane.
+    flow, flow_pressure : float
+        Of the air that flows through it, alike, kg/s and Pa.
+    hose : float
+        Σ L/d⁴ of the tubes, 1/m³.
+    """
+
+    scale_sd: float
+    calibration_pressure: float
+    flow: float
+    flow_pressure: float
+    hose: float
+
+
+@dataclass(frozen=True, slots=True)
 class PortKnowledge:
     """What a calibration tells of both ports' errors, by the law of `sensors.probe`.
 
@@ -170,6 +199,7 @@ class HeadKnowledge:
     rate : float
         Readings a second, Hz.
     total, static : PressureKnowledge
+        The first is the differential sensor where the head has one: pressures are differences then.
     ports : PortKnowledge
     temperature_sd : float
         Of the temperature, K: noise, turn-on offset, and what the board is warmer than the air.
@@ -183,6 +213,8 @@ class HeadKnowledge:
         Share of the flow's warming that the thermometer reads, and its standard deviation.
     difference_sd : float
         What the pair's difference may be at rest where no tare has found it, Pa.
+    difference : DifferenceKnowledge or None
+        Of the differential sensor, in a head that has one.
     """
 
     rate: float
@@ -196,6 +228,7 @@ class HeadKnowledge:
     thermometer_recovery: float
     thermometer_recovery_sd: float
     difference_sd: float
+    difference: DifferenceKnowledge | None = None
 
 
 def known_of_accelerometer(settings: AccelerometerSettings, vibration: VibrationSettings) -> AccelerometerKnowledge:
@@ -226,8 +259,8 @@ def known_of_accelerometer(settings: AccelerometerSettings, vibration: Vibration
 def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
     """Return what may be believed of an air-data head."""
     felt = settings.acceleration_sensitivity
-    parts = settings.total.description(), settings.static.description()
-    chosen = settings.total, settings.static
+    chosen = settings.sensors()
+    parts = chosen[0].description(), chosen[1].description()
     warmer = hypot(WARMTH_SD, settings.thermal.self_heating)
     total, static = (
         replace(
@@ -240,6 +273,8 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
     )
     column = static.column - total.column
     thermometer = parts[1]
+    difference = _known_of_difference(parts[0], settings) if isinstance(parts[0], DifferentialDescription) else None
+    paired = parts if difference is None else parts[:1]  # those whose errors are in the difference
     return HeadKnowledge(
         rate=settings.rate,
         total=total,
@@ -250,10 +285,22 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         ),
         column=column,
         column_sd=COLUMN_SD * abs(column),
-        walk=hypot(total.walk, static.walk, *(_warming(part, settings.thermal) for part in parts)),
+        walk=hypot(*(part.walk for part in paired), *(_warming(part, settings.thermal) for part in paired)),
         thermometer_recovery=settings.thermometer_recovery,
         thermometer_recovery_sd=RECOVERY_SD if settings.thermometer_recovery > 0.0 else 0.0,
-        difference_sd=hypot(total.offset_sd, static.offset_sd),
+        difference_sd=hypot(total.offset_sd, static.offset_sd) if difference is None else total.offset_sd,
+        difference=difference,
+    )
+
+
+def _known_of_difference(part: DifferentialDescription, settings: AirDataSettings) -> DifferenceKnowledge:
+    tubes = [tube for tube, _ in settings.tubes()]
+    return DifferenceKnowledge(
+        scale_sd=hypot(part.scale_sd, LOST_SD * share_lost(part, tubes, TYPICAL)),
+        calibration_pressure=part.calibration_pressure,
+        flow=part.flow,
+        flow_pressure=part.flow_pressure,
+        hose=hose(tubes) if part.flow > 0.0 else 0.0,
     )
 
 
@@ -319,7 +366,8 @@ def _at_rest(part: PressureDescription, warmer: float) -> float:
     """What a reading is off by at rest, Pa, of a die off 25 °C by so much, K: one standard deviation."""
     low, high = part.solder
     solder = hypot((high - low) / 6.0, 0.5 * (low + high))
-    return hypot(part.offset_sd, solder, part.offset_tc_sd * warmer, part.scale_sd * PLACE, part.drift_sd)
+    away = 0.0 if isinstance(part, DifferentialDescription) else PLACE  # at rest there is no difference
+    return hypot(part.offset_sd, solder, part.offset_tc_sd * warmer, part.scale_sd * away, part.drift_sd)
 
 
 def _warming(part: PressureDescription, thermal: ThermalSettings) -> float:

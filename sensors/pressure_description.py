@@ -10,6 +10,7 @@ The factors become part of the description, so the simulated unit and a filter g
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import acos, inf, pi, sqrt
+from typing import Self
 
 from sensors.choice import choose
 from sensors.rules import listed, number
@@ -184,7 +185,7 @@ class PressureDescription:
     noise_scale: float = 1.0
     errors: PressureErrors = PressureErrors()
 
-    def select(self, *, mode: str | None = None, iir: int | None = None) -> "PressureDescription":
+    def select(self, *, mode: str | None = None, iir: int | None = None) -> Self:
         """Return the same part in another mode ("x8/x1") or with another filter coefficient; ValueError if none."""
         chosen = self.mode
         if mode is not None:
@@ -195,7 +196,7 @@ class PressureDescription:
             self, mode=chosen, iir=self.iir if iir is None else choose(f"{self.name}: iir", iir, coefficients)
         )
 
-    def scaled(self, noise_scale: float, errors: PressureErrors | None = None) -> "PressureDescription":
+    def scaled(self, noise_scale: float, errors: PressureErrors | None = None) -> Self:
         """Return a part with its white noise and its errors times these factors, for the unit and for a filter."""
         e = PressureErrors() if errors is None else errors
         return replace(

@@ -11,6 +11,7 @@ from annotated_types import Ge, Gt, Interval
 
 from sensors import catalogue
 from sensors.accelerometer_description import AccelerometerDescription, AccelerometerErrors
+from sensors.differential_description import DifferentialDescription
 from sensors.pressure_description import PressureDescription, PressureErrors
 from sensors.unit import Unit
 
@@ -269,6 +270,51 @@ class PressureSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class DifferentialSettings:
+    """The differential pressure sensor between the two ports of a head of that kind.
+
+    Attributes
+    ----------
+    preset : str
+        A shipped part, or the path of a TOML file of one's own.
+    mode : str or None
+        One of the part's modes; None is its default.
+    polarity : {"normal", "reversed"}
+        Which tube is on which port; reversed, the sensor reads p_s − p_t. Nothing on board knows it.
+    noise_scale : float
+        Factor on the part's white noise, an assumption about the part: it holds for the unit and for the filter.
+    offset_pa : float
+        Offset beside that of the drawn unit, Pa.
+    unit : str
+        Which unit flies: "random", drawn within the datasheet; "typical", off by one standard deviation; "ideal".
+    errors : group
+        Factors on the datasheet's other errors.
+    normal : (x, y, z) or None
+        Normal of the membrane, body axes, along which it feels acceleration; None is (1, 0, 0).
+    rate_error_percent : float
+        Error of the oscillator beside that of the drawn unit, %.
+    faults : list of groups
+        What breaks.
+    """
+
+    preset: str = "ms4525do"
+    mode: str | None = None
+    polarity: Literal["normal", "reversed"] = "normal"
+    noise_scale: Annotated[float, Interval(ge=0.0, le=1000.0)] = 1.0
+    offset_pa: Annotated[float, Interval(ge=-100000.0, le=100000.0)] = 0.0
+    unit: Unit = "random"
+    errors: PressureErrors = field(default_factory=PressureErrors)
+    normal: Vector | None = None
+    rate_error_percent: Annotated[float, Interval(ge=-20.0, le=20.0)] = 0.0
+    faults: tuple[Fault, ...] = ()
+
+    def description(self) -> DifferentialDescription:
+        """Return the part as chosen, for the unit and for the filter; ValueError if there is none such."""
+        part = catalogue.differential_sensor(self.preset).select(mode=self.mode)
+        return part.scaled(self.noise_scale, self.errors)
+
+
+@dataclass(frozen=True, slots=True)
 class PortFault:
     """Something that goes wrong with a port between two times.
 
@@ -394,11 +440,17 @@ class StaticPortSettings:
 
 @dataclass(frozen=True, slots=True)
 class AirDataSettings:
-    """The air-data head: a total and a static pressure sensor on one bus.
+    """The air-data head: two pressure sensors on one bus.
 
     Attributes
     ----------
+    kind : {"absolute", "differential"}
+        Two absolute sensors, total and static; or a differential one between the two ports and the static one. A row
+        of the second kind has the same columns: its p_total is the static reading and the difference together.
     total, static : PressureSettings
+        The first is not there in a head of kind "differential".
+    differential : group
+        The differential sensor; it is not there in a head of kind "absolute".
     total_port, static_port : group
         What is between the air and the two sensors.
     pipe : float
@@ -438,8 +490,10 @@ class AirDataSettings:
         on the nose of fw8. A rig has its head where the stream is.
     """
 
+    kind: Literal["absolute", "differential"] = "absolute"
     total: PressureSettings = field(default_factory=PressureSettings)
     static: PressureSettings = field(default_factory=PressureSettings)
+    differential: DifferentialSettings = field(default_factory=DifferentialSettings)
     rate: Annotated[float, Interval(gt=0.0, le=1000.0)] = 100.0
     tare: Tare = "covered"
     tare_duration: Annotated[float, Interval(gt=0.0, le=60.0)] = 1.0
@@ -458,6 +512,10 @@ class AirDataSettings:
     acceleration_sensitivity: bool = False
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
 
+    def sensors(self) -> tuple[PressureSettings | DifferentialSettings, PressureSettings]:
+        """Return what reads the total channel, the total or the differential sensor, and the static sensor."""
+        return (self.differential if self.kind == "differential" else self.total), self.static
+
     def tubes(self) -> tuple[tuple[TubeSettings, Vector], tuple[TubeSettings, Vector]]:
         """Return the tubes of the total and the static port as they are built, each with its direction."""
 
@@ -468,6 +526,6 @@ class AirDataSettings:
         return built(self.total_port.tube, AFT), built(self.static_port.tube, DOWN)
 
     def normals(self) -> tuple[Vector, Vector]:
-        """Return the normals of the total and the static sensor's membranes, body axes, of any length."""
-        total, static = self.total.normal, self.static.normal
+        """Return the normals of both sensors' membranes, as of `sensors`, body axes, of any length."""
+        total, static = (sensor.normal for sensor in self.sensors())
         return FORWARD if total is None else total, DOWN if static is None else static

@@ -200,6 +200,24 @@ FLIGHTS: dict[str, Wanted] = {
         *NOT_TWICE, "index=3", "duration=6", 'estimator.kind="constant-velocity"', DISPERSED,
         'correlations=[{between=["aircraft.mass_factor","aircraft.lift_factor"],coefficient=0.6}]',
     )),
+    "thermal-difference": ("gusty", 34, (
+        *NOT_TWICE, "duration=9", 'air_data.kind="differential"', 'air_data.differential.preset="sdp33"',
+        'air_data.differential.mode="average"', "air_data.differential.noise_scale=1.5", "air_data.pipe=0.2",
+        "air_data.differential.offset_pa=-4", "air_data.differential.rate_error_percent=2",
+        "environment.ground_elevation=1500", "mismatch.flow_through=0.8", "mismatch.difference_scale=1.3",
+        *(f"air_data.differential.errors.{term}={factor}" for term, factor in (
+            ("offset", 1.1), ("solder", 1.2), ("scale", 0.9), ("temperature", 1.4), ("thermometer", 1.5),
+            ("drift", 1.6), ("random_walk", 1.7), ("clock", 1.8),
+        )),
+        'air_data.differential.errors.drift_model="flicker"',
+        'air_data.differential.faults=[{kind="stuck",start=7,stop=7.5}]',
+    )),
+    "swapped-difference": ("catapult", 35, (
+        *NOT_TWICE, "duration=6", 'air_data.kind="differential"', 'air_data.differential.polarity="reversed"',
+        'air_data.differential.unit="typical"', "air_data.differential.normal=[0.9,0,0.2]",
+        "air_data.acceleration_sensitivity=true", "air_data.differential.errors.acceleration=1.2",
+        "air_data.differential.errors.saturation=false", "air_data.differential.errors.quantisation=false",
+    )),
     "opens-on-the-rail": ("catapult", 26, (
         "launcher.wait_min=2.8", "launcher.wait_max=2.9", "duration=5",
         'accelerometer.faults=[{kind="offset",start=1.2,stop=1.45,size=95,axis="x"},{kind="dropout",start=3.3,stop=4}]',

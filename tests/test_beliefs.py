@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import uavsim
-from sensors import AccelerometerKnowledge, AirDataHead, HeadKnowledge, Streams
-from sensors.knowledge import PortKnowledge, PressureKnowledge
+from sensors import AccelerometerKnowledge, AirDataHead, AirDataSettings, HeadKnowledge, Streams
+from sensors.knowledge import DifferenceKnowledge, PortKnowledge, PressureKnowledge
 from uavsim import beliefs
-from uavsim.beliefs import Calibration, believed_air, believed_noise, calibrated, turbulence
+from uavsim.beliefs import Calibration, believed_air, believed_flow, believed_noise, calibrated, turbulence
 from uavsim.cosim import draw
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.plants.air.dryden import deviations
@@ -83,7 +83,7 @@ KNOWN = [("known_of_accelerometer", f"{field.name}") for field in fields(Acceler
     )
     for field in fields(kind)
     if not path or field.name not in ("walk", "column", "offset_sd")  # of the pair's difference, which the head has
-    if field.name not in ("total", "static", "ports")
+    if field.name not in ("total", "static", "ports", "difference")
 ]
 
 
@@ -107,6 +107,40 @@ def test_every_number_of_the_knowledge_is_believed(of: str, name: str, monkeypat
 
     monkeypatch.setattr(beliefs, of, doubled)
     assert believed_noise(flown) != plain
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(DifferenceKnowledge)])
+def test_every_number_of_a_difference_is_believed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twice a number of what is known of a differential sensor, and noise or correction are others."""
+    flown = scenario("air_data.kind=differential", "air_data.differential.preset=sdp33", "air_data.pipe=0.05")
+    plain, known = (believed_noise(flown), believed_flow(flown)), beliefs.known_of_head
+
+    def doubled(settings: AirDataSettings) -> HeadKnowledge:
+        found = known(settings)
+        assert found.difference is not None
+        inner = replace(found.difference, **{name: 2.0 * getattr(found.difference, name)})
+        return replace(found, difference=inner)
+
+    monkeypatch.setattr(beliefs, "known_of_head", doubled)
+    assert (believed_noise(flown), believed_flow(flown)) != plain
+
+
+def test_a_differential_head_is_believed_by_its_difference() -> None:
+    """The static sensor's noise is not in it; a thermal part's figures are those of 966 hPa, here of 1013.25 hPa."""
+    membrane = believed_noise(scenario("air_data.kind=differential"))
+    assert (membrane.differential, membrane.total_sd, membrane.total_step) == (True, 1.5, 1.052)
+    assert membrane.total_range == (-6895.0, 6895.0)
+    assert membrane.difference_scale_sd == 2.5e-3
+    assert believed_flow(scenario("air_data.kind=differential")) is None
+    given = ("air_data.kind=differential", "air_data.differential.preset=sdp33")
+    thermal, flow = believed_noise(scenario(*given)), believed_flow(scenario(*given))
+    assert thermal.total_sd == pytest.approx(0.2 * 966.0 / 1013.25)
+    assert thermal.total_range[1] == pytest.approx(0.98 * 1500.0 * 966.0 / 1013.25)
+    assert flow is not None
+    assert (flow.calibration_pressure, flow.share) == (96_600.0, 1.0)
+    kept = (*given, "mismatch.flow_through=0", "mismatch.difference_scale=0")
+    assert believed_flow(scenario(*kept)) is None
+    assert (believed_noise(scenario(*kept)).total_sd, believed_noise(scenario(*kept)).difference_scale_sd) == (0.2, 0.0)
 
 
 def test_a_calibration_is_of_the_units_that_fly_with_its_error() -> None:

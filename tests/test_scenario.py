@@ -535,11 +535,12 @@ def test_a_written_file_is_read_as_the_same(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("part", presets())
 def test_every_preset_can_be_chosen_for_something(part: str) -> None:
-    def accepts(key: str) -> bool:
+    def accepts(key: str, *more: str) -> bool:
         try:
-            load_scenario("catapult", overrides=[f"{key}={part}", "detector.threshold=20"])
+            load_scenario("catapult", overrides=[f"{key}={part}", "detector.threshold=20", *more])
         except ValueError:
             return False
         return True
 
-    assert [accepts("accelerometer.preset"), accepts("air_data.total.preset")].count(True) == 1
+    differential = accepts("air_data.differential.preset", "air_data.kind=differential")
+    assert [accepts("accelerometer.preset"), accepts("air_data.total.preset"), differential].count(True) == 1

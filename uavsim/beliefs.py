@@ -9,6 +9,8 @@ estimator: this module alone copies them from the one into the other. What no de
 * The turbulence is that which the environment declares (`uavsim.plants.air`), at the height of cruise, along the flight
   path: of the wind's axes, u where the rail points along the wind and v where it points across.
 * So is the humidity of the air.
+* Where the readings of a thermal differential sensor end, and how coarse they are, depends on the absolute pressure: it
+  is that of the field.
 """
 
 from dataclasses import dataclass, replace
@@ -17,6 +19,7 @@ from math import cos, hypot, radians, sin, sqrt
 from sensors import HeadKnowledge, Streams, known_of_accelerometer, known_of_head, membranes
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.head_errors import HeadErrors
+from uavsim.onboard.flow_through import FlowThroughSettings
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
 from uavsim.plants.air.dryden import FOOT, LOWEST, deviations, lengths
 from uavsim.plants.air.settings import EnvironmentSettings
@@ -24,6 +27,8 @@ from uavsim.plants.air.weather import at_ground
 from uavsim.plants.air.wind import growth, mean_wind
 from uavsim.scenario import MismatchSettings, Scenario
 
+# of a thermal part's range: an aircraft is above its field, where what it reads is worth more; 1 % is 90 m
+ENDS = 0.98
 GROWN = 0.3  # share of the mean wind's growth along the path that is not known: place, veer and the aircraft's heading
 DECLARED = 0.1  # share of the mean wind that a declared one is off by: a hand anemometer, gusts between its looks
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
@@ -78,12 +83,14 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         known_of_accelerometer(scenario.accelerometer, scenario.vibration),
     )
     total, static = head.total, head.static
+    thin = _thin(scenario, head)
+    ends = thin if thin == 1.0 else ENDS * thin
     known, unknown = _acceleration(head, belief, (calibration.total, calibration.static))
     return NoiseModel(
-        total_sd=belief.total_noise * total.noise_sd,
+        total_sd=belief.total_noise * thin * total.noise_sd,
         static_sd=belief.static_noise * static.noise_sd,
         temperature_sd=belief.temperature * head.temperature_sd,
-        total_tuned_sd=total.noise_sd,
+        total_tuned_sd=thin * total.noise_sd,
         static_tuned_sd=static.noise_sd,
         total_window=belief.lag * total.window,
         static_window=belief.lag * static.window,
@@ -99,9 +106,9 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         accelerometer_rate=accelerometer.rate,
         accelerometer_lag=belief.accelerometer_lag * accelerometer.lag,
         head_rate=head.rate,
-        total_range=(total.low, total.high),
+        total_range=(ends * total.low, ends * total.high),
         static_range=(static.low, static.high),
-        total_step=total.step,
+        total_step=thin * total.step,
         static_step=static.step,
         accelerometer_range=(-accelerometer.range, accelerometer.range - accelerometer.step),
         accelerometer_step=accelerometer.step,
@@ -114,9 +121,11 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         rail_elevation=_elevation(scenario),
         rail_elevation_sd=radians(scenario.flight_computer.rail_elevation_sd_deg),
         rail_roll=radians(scenario.flight_computer.rail_roll_deg),
-        difference_sd=belief.drift * head.difference_sd,
+        difference_sd=belief.drift * thin * head.difference_sd,
         thermometer_recovery=min(1.0, head.thermometer_recovery),
         thermometer_recovery_sd=head.thermometer_recovery_sd,
+        differential=head.difference is not None,
+        difference_scale_sd=0.0 if head.difference is None else belief.difference_scale * head.difference.scale_sd,
         head=_ports(head, belief, calibration),
         covered=scenario.air_data.tare == "covered",
     )
@@ -144,6 +153,24 @@ def _ports(head: HeadKnowledge, belief: MismatchSettings, calibration: Calibrati
         beta2_sd=belief.position_sd * ports.beta2_sd,
         slipstream_sd=belief.position_sd * ports.slipstream_sd,
     )
+
+
+def believed_flow(scenario: Scenario) -> FlowThroughSettings | None:
+    """What is undone of a thermal differential sensor's readings; None where the head has none."""
+    known = known_of_head(scenario.air_data).difference
+    share = scenario.mismatch.flow_through
+    if known is None or not (known.calibration_pressure > 0.0 or known.hose > 0.0) or share == 0.0:
+        return None
+    return FlowThroughSettings(known.calibration_pressure, known.flow, known.flow_pressure, known.hose, share)
+
+
+def _thin(scenario: Scenario, head: HeadKnowledge) -> float:
+    """Factor on what a thermal part has read, in the air of the field; 1 of all others."""
+    difference = head.difference
+    if difference is None or not difference.calibration_pressure > 0.0:
+        return 1.0
+    factor = difference.calibration_pressure / at_ground(scenario.environment).pressure
+    return 1.0 + scenario.mismatch.flow_through * (factor - 1.0)
 
 
 def _elevation(scenario: Scenario) -> float | None:
@@ -236,7 +263,8 @@ def _acceleration(
 ) -> tuple[float, float]:
     """Pressure error of the pair's difference per specific force along body x, and its standard deviation."""
     known, unknown = head.column, head.column_sd
-    for part, found, sign in ((head.total, calibration[0], 1.0), (head.static, calibration[1], -1.0)):
+    both = ((head.total, calibration[0], 1.0), (head.static, calibration[1], -1.0))
+    for part, found, sign in both if head.difference is None else both[:1]:
         if part.membrane_sd > 0.0:
             known += sign * found
             unknown = hypot(unknown, belief.acceleration_calibration * part.membrane_sd)

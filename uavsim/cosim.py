@@ -22,8 +22,8 @@ from weakref import proxy
 
 from sensors import Accelerometer, AirDataHead, Streams, Vibration
 from sensors.mounting import attitude, linear
-from uavsim import __version__
-from uavsim.beliefs import NO_CALIBRATION, Calibration, believed_air, believed_noise, calibrated
+from uavsim import __version__, part_range
+from uavsim.beliefs import NO_CALIBRATION, Calibration, believed_air, believed_flow, believed_noise, calibrated
 from uavsim.criteria import TOUCHED
 from uavsim.dispersions import resolved
 from uavsim.failure import FAILED, PartError, built
@@ -31,6 +31,7 @@ from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.judged import Judged
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
+from uavsim.onboard.flow_through import FlowThrough
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
 from uavsim.onboard.rail_offset import RailOffset
@@ -141,6 +142,8 @@ class Onboard:
             Readiness(noise, rail),
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
+        flow = believed_flow(scenario)
+        self._flow = None if flow is None else FlowThrough(flow)
         self.estimates: list[Estimate] = []
 
     def _aligned(self, mounting_deg: tuple[float, float, float]) -> Callable[[float, float, float, float], None]:
@@ -156,6 +159,8 @@ class Onboard:
 
     def air_data(self, reading: AirReading) -> None:
         """Take one reading of the head."""
+        if self._flow is not None:
+            reading = self._flow.row(reading)
         estimate = self.computer.air_data(*reading)
         if estimate is not None:
             self.estimates.append(estimate)
@@ -304,7 +309,7 @@ class Cosimulation:
     @property
     def remarks(self) -> list[str]:
         """What of plant and air deserves a word, a line each; at the end there may be more of it."""
-        said = list(getattr(self.plant, "remarks", ()))
+        said = [*part_range.remark(self.scenario), *getattr(self.plant, "remarks", ())]
         kind = self.scenario.plant.chosen
         if not (kind.flies or kind.air) and moves(self.scenario.environment):
             said.append(

@@ -22,7 +22,7 @@ FOLDER = "inputs"
 HASHES = "inputs"
 """The scenario's table of hashes, by path below the flight's folder."""
 AIRCRAFT = "aircraft.model"
-PRESETS = ("accelerometer.preset", "air_data.total.preset", "air_data.static.preset")
+PRESETS = ("accelerometer.preset", "air_data.total.preset", "air_data.static.preset", "air_data.differential.preset")
 KEYS = (AIRCRAFT, *PRESETS)
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from annotated_types import Interval
 
-from sensors import AccelerometerSettings, AirDataSettings, PressureSettings, VibrationSettings
+from sensors import AccelerometerSettings, AirDataSettings, DifferentialSettings, PressureSettings, VibrationSettings
 from sensors.catalogue import captured
 from sensors.choice import nearest, shown
 from sensors.data_files import parse_toml, read_toml
@@ -95,6 +95,10 @@ class MismatchSettings:
         Factor on the standard deviation of its offset.
     accelerometer_lag : float
         Factor on the age of a reading of specific force at its time stamp.
+    difference_scale : float
+        Factor on the standard deviation of a differential sensor's scale error.
+    flow_through : float
+        Share of what a thermal differential sensor loses by thin air and in its tubes that is undone; 0: nothing.
     gust : float
         Factor on the standard deviation of the turbulence that the environment declares, and on the mean wind's growth.
     wind : float
@@ -117,6 +121,8 @@ class MismatchSettings:
     accelerometer_scale: Belief = 1.0
     accelerometer_offset: Belief = 1.0
     accelerometer_lag: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
+    difference_scale: Belief = 1.0
+    flow_through: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     gust: Belief = 1.0
     wind: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
     humidity: Annotated[float, Interval(ge=0.0, le=10.0)] = 1.0
@@ -655,7 +661,15 @@ def _check_air(s: Scenario) -> None:
 
 
 def _check_sensors(s: Scenario) -> None:
-    """Refuse parts, ranges, rates, filters and modes that do not exist."""
+    """Refuse parts, ranges, rates, filters and modes that do not exist, and what breaks a sensor that is not there."""
+    air = s.air_data
+    idle = "total" if air.kind == "differential" else "differential"
+    if getattr(air, idle).faults:
+        raise SettingError(
+            f"air_data.{idle}.faults: a head of air_data.kind = {air.kind!r} has no such sensor",
+            f"air_data.{idle}.faults",
+            "air_data.kind",
+        )
     for key, part in _parts(s):
         try:
             part.description()
@@ -699,6 +713,7 @@ def _check_directions(s: Scenario) -> None:
     air = s.air_data
     for key, vector in (
         ("total.normal", air.total.normal),
+        ("differential.normal", air.differential.normal),
         ("static.normal", air.static.normal),
         ("total_port.tube.direction", air.total_port.tube.direction),
         ("static_port.tube.direction", air.static_port.tube.direction),
@@ -728,12 +743,15 @@ def _check_order(key: str, faults: Iterable[Fault | PortFault]) -> None:
             )
 
 
-def _parts(s: Scenario) -> tuple[tuple[str, AccelerometerSettings | PressureSettings], ...]:
-    """Sensors and the keys that they stand under."""
+def _parts(
+    s: Scenario,
+) -> tuple[tuple[str, AccelerometerSettings | PressureSettings | DifferentialSettings], ...]:
+    """Sensors that fly and the keys that they stand under."""
+    first, static = s.air_data.sensors()
     return (
         ("accelerometer", s.accelerometer),
-        ("air_data.total", s.air_data.total),
-        ("air_data.static", s.air_data.static),
+        ("air_data.differential" if isinstance(first, DifferentialSettings) else "air_data.total", first),
+        ("air_data.static", static),
     )
 
 

@@ -34,13 +34,15 @@ def set_faults(scenario: "Scenario") -> list[SetFault]:
         "static port": air.static_port.faults,
         "both ports": air.port_faults,
         "total sensor": air.total.faults,
+        "differential sensor": air.differential.faults,
         "static sensor": air.static.faults,
         "thermometer": air.thermometer_faults,
         "accelerometer": scenario.accelerometer.faults,
     }
     if air.cover_left_on:
         found.append(SetFault("cover left on", "cover", 0.0, FOREVER))
-    if air.swapped_tubes:
+    reversed_ = air.kind == "differential" and air.differential.polarity == "reversed"
+    if air.swapped_tubes or reversed_:
         found.append(SetFault("tubes swapped", "swap", 0.0, FOREVER))
     for place, of_place in faults.items():
         for fault in of_place:

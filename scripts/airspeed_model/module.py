@@ -18,6 +18,7 @@ ALL, STEADY = "vbpsdk", "vbpsd"  # without a push k is told nothing, and is know
 MIDDLE = "(v + 0.5 * change)"
 ACROSS = {physics.middle: -physics.c / (physics.density * physics.dt)}  # Q by c = ∂p/∂s of the step
 SHORT = {"third": physics.dt**2 / 3, "half": physics.dt / 2}  # what Q's entries share
+RATIO = physics.Y ** sp.Rational(7, 2)  # of total and static pressure
 NOISE = {"p": "self._static_density * dt", "d": "self._difference_density * dt"}
 
 
@@ -132,7 +133,7 @@ def bent(v: str = "v", p: str = "p") -> list[str]:
         f"power = {code(physics.y ** sp.Rational(5, 2))}",
         f"curvature = {code(by_y(H_TOTAL[0]) / physics.v, names)}",
         f"hv = {code(physics.curvature * physics.v, names)}",
-        f"hp = {code(by_y(H_TOTAL[2]))}",
+        f"hp = {code(by_y(H_TOTAL[2]), {physics.relative: own('_relative')})}",
     ]
 
 
@@ -278,12 +279,12 @@ def elementwise() -> dict[str, str]:
         "total_h": ", ".join(
             f"{i.upper()}: {slope}" for i, slope in slopes(H_TOTAL, ALL, {"v": "hv", "p": "hp"}).items()
         ),
-        "total_power": checked("(1.0 + v * v / heat) ** 3.5", H_TOTAL[2]),
-        "total_pressure": checked("p * power + d + pushed * k", physics.TOTAL, power=H_TOTAL[2]),
+        "total_power": checked("(1.0 + v * v / heat) ** 3.5", RATIO),
+        "total_pressure": checked("p * (power - relative) + d + pushed * k", physics.TOTAL, power=RATIO),
         "total_hv": checked("7.0 * p / heat * v * y**2.5", H_TOTAL[0], y=physics.Y),
-        "total_hp": checked("y**3.5", H_TOTAL[2], y=physics.Y),
+        "total_hp": checked("y**3.5 - relative", H_TOTAL[2], y=physics.Y),
         "total_y": checked("1.0 + v * v / heat", physics.Y),
-        "isentropic": checked("p * y * y * y * sqrt(y)", physics.TOTAL.subs({physics.d: 0, physics.k: 0}), y=physics.Y),
+        "isentropic": checked("p * y * y * y * sqrt(y)", physics.p * RATIO, y=physics.Y),
         "isentropic_speed": inverse("sqrt(heat * expm1(2.0 / 7.0 * log1p(excess)))"),
     }
 

@@ -23,23 +23,25 @@ Measurements: the static pressure p, which a time Δ before the filter's own was
 the total pressure by the isentropic relation with γ = 1.4 (Liepmann & Roshko, Elements of Gasdynamics, 1957, 2.24):
 
     z_s = p + ahead s + noise
-    z_t = p (1 + v²/(7 R T))^(7/2) + d + k · pushed + noise
+    z_t = p [(1 + v²/(7 R T))^(7/2) − r] + d + k · pushed + noise
 
-with `pushed` the specific force less that at rest, m/s², and `heat` = 7 R T, m²/s².
+with `pushed` the specific force less that at rest, m/s², and `heat` = 7 R T, m²/s². r, `relative`, is 0 of an absolute
+sensor, which reads the total pressure, and 1 of a differential one, which reads it relative to the static pressure: an
+error of p then hardly counts.
 """
 
 import sympy as sp
 
 # The order in which symbols are declared is the order in which factors and terms are printed: it fixes the rounding.
 ORDER = sp.symbols(
-    "density middle force gained curvature v b p heat power y s d pushed k ahead c dt bias slope variance walk drift "
-    "bias_time slope_time keep stay speed_sd bias_sd rest_sd static_sd difference_sd acceleration_sd",
+    "density middle force gained curvature v b p heat power y relative s d pushed k ahead c dt bias slope variance "
+    "walk drift bias_time slope_time keep stay speed_sd bias_sd rest_sd static_sd difference_sd acceleration_sd",
     positive=True,
 )
 (
-    density, middle, force, gained, curvature, v, b, p, heat, power, y, s, d, pushed, k, ahead, c, dt, bias, slope,
-    variance, walk, drift, bias_time, slope_time, keep, stay, speed_sd, bias_sd, rest_sd, static_sd, difference_sd,
-    acceleration_sd,
+    density, middle, force, gained, curvature, v, b, p, heat, power, y, relative, s, d, pushed, k, ahead, c, dt, bias,
+    slope, variance, walk, drift, bias_time, slope_time, keep, stay, speed_sd, bias_sd, rest_sd, static_sd,
+    difference_sd, acceleration_sd,
 ) = ORDER  # fmt: skip
 STATES = (v, b, p, s, d, k)
 UNIT = sp.eye(6)
@@ -80,7 +82,7 @@ Q_RAIL = _GAINED
 
 Y = 1 + v**2 / heat
 STATIC = p + ahead * s
-TOTAL = p * Y ** sp.Rational(7, 2) + d + pushed * k
+TOTAL = p * (Y ** sp.Rational(7, 2) - relative) + d + pushed * k
 H_STATIC = sp.Matrix([STATIC]).jacobian(STATES)
 H_TOTAL = sp.Matrix([TOTAL]).jacobian(STATES)
 # h'' of the total pressure in v near rest, where its bend counts. The next term, 1 + 5 M²/5 …, is below 1e-2 to Mach

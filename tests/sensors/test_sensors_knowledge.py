@@ -18,6 +18,8 @@ from sensors import (
     AccelerometerErrors,
     AccelerometerSettings,
     AirDataSettings,
+    DifferentialDescription,
+    DifferentialSettings,
     PressureDescription,
     PressureMode,
     PressureSettings,
@@ -52,6 +54,8 @@ BASE = Chosen(
         acceleration_sensitivity=True,
     ),
 )
+RELATIVE = replace(BASE.air_data, kind="differential")
+THERMAL = replace(RELATIVE, differential=DifferentialSettings(preset="sdp33"))
 PART, BAROMETER = BASE.accelerometer.description(), BASE.air_data.total.description()
 
 
@@ -211,15 +215,38 @@ AIR: dict[str, Named] = {
     "thermal.lag": (10.0, *more("head.walk", 2.0 * WARMING**2 * (3.0 * math.exp(-4.0) - math.exp(-4.0 / 3.0)))),
     "rate": (50.0, *is_("head.rate", 50.0)),
 }
+OF_DIFFERENCE = "head.difference.scale_sd"
+DIFFERENCE: dict[str, Named] = {
+    "kind": ("differential", *is_("head.total.noise_sd", 1.5)),
+    "differential.preset": ("sdp33", *is_("head.total.noise_sd", 0.2)),
+    "differential.mode": ("average", *is_("head.total.noise_sd", 0.12)),
+    "differential.noise_scale": (3.0, *times("head.total.noise_sd", 3.0)),
+    "differential.errors.quantisation": (False, *is_("head.total.noise_sd", 0.0)),
+    "differential.errors.acceleration": (3.0, *times("head.total.membrane_sd", 3.0)),
+    "differential.errors.drift": (3.0, *is_("head.total.walk", math.sqrt(9.0 * 2.0 * 0.5**2 / 100.0 + 0.01**2))),
+    "differential.errors.random_walk": (30.0, *is_("head.total.walk", math.sqrt(2.0 * 0.5**2 / 100.0 + 0.3**2))),
+    "differential.normal": ((0.6, 0.0, 0.8), *is_("head.total.membrane_sd", 0.6 * 0.2)),
+    "differential.offset_pa": (300.0, *more("head.difference_sd", 300.0**2)),
+    "differential.errors.offset": (3.0, *more("head.difference_sd", 8.0 * 30.0**2)),
+    "differential.errors.scale": (3.0, *times(OF_DIFFERENCE, 3.0)),
+    "differential.errors.temperature": (3.0, *more("head.difference_sd", 8.0 * (0.5 * WARMTH) ** 2)),
+    "differential.errors.saturation": (False, *is_("head.total.high", math.inf)),
+}
 NAMED = {
     f"{group}.{key}": named
-    for group, table in (("accelerometer", ACCELEROMETER), ("vibration", VIBRATION), ("air_data", AIR))
+    for group, table in (("accelerometer", ACCELEROMETER), ("vibration", VIBRATION), ("air_data", AIR | DIFFERENCE))
     for key, named in table.items()
 }
 SHOWS_WITH: dict[str, tuple[str, Any]] = {
     "air_data.thermal.powered_for": ("air_data.thermal.self_heating", 20.0),
     "air_data.thermal.lag": ("air_data.thermal", ThermalSettings(self_heating=20.0, powered_for=20.0)),
     "accelerometer.preset": ("accelerometer.filter", None),
+    **{f"air_data.{key}": ("air_data", RELATIVE) for key in DIFFERENCE if key != "kind"},
+    "air_data.differential.mode": ("air_data", THERMAL),
+    "air_data.differential.errors.quantisation": (
+        "air_data",
+        replace(RELATIVE, differential=DifferentialSettings(noise_scale=0.0)),
+    ),
     **{f"air_data.{n}.errors.quantisation": (f"air_data.{n}.noise_scale", 0.0) for n in ("total", "static")},
 }
 """What else is chosen where a key is tried: a part has filters of its own, rounding shows without noise."""
@@ -249,6 +276,9 @@ NOT_YET = {
     "vibration.tones": "a tone is no noise of a density",
     "vibration.spectra": "only the flat band is believed yet",
     "air_data.total.errors.thermometer": "the temperature is the static sensor's",
+    "air_data.differential.errors.thermometer": "the temperature is the static sensor's",
+    "air_data.differential.errors.solder": "no shipped part is said to move by it",
+    "air_data.differential.polarity": BREAKS,
     "air_data.port_faults": BREAKS,
     "air_data.swapped_tubes": BREAKS,
     "air_data.cover_left_on": BREAKS,
@@ -259,13 +289,19 @@ NOT_YET = {
     "air_data.cover_off": "when the tare is taken the estimator is told",
     **{
         f"air_data.{name}{key}": reason
-        for name in ("total", "static")
+        for name in ("total", "static", "differential")
         for key, reason in {
             ".unit": UNIT,
             ".errors.clock": CLOCK,
             ".errors.drift_model": "one deviation stands for either way to wander",
             ".rate_error_percent": CLOCK,
             ".faults": BREAKS,
+        }.items()
+    },
+    **{
+        f"air_data.{name}{key}": reason
+        for name in ("total", "static")
+        for key, reason in {
             "_port.faults": BREAKS,
         }.items()
     },
@@ -380,6 +416,11 @@ OF_MODE = {
     "conversion_time": (2e-3, *is_("head.static.window", 2e-3)),
     "rate": (100.0, "head.static.lag", lambda before: before["head.static.lag"]),
 }
+OF_FLOW = {
+    "calibration_pressure": (90_000.0, *is_("head.difference.calibration_pressure", 90_000.0)),
+    "flow": (0.0, *is_(OF_DIFFERENCE, 0.03)),  # what is not known of the tubes' loss
+    "flow_pressure": (100.0, *is_("head.difference.flow_pressure", 100.0)),
+}
 BAROMETER_NOT_YET = {
     **dict.fromkeys(("name", "document", "modes", "iir"), SETTING),
     **dict.fromkeys((f.name for f in fields(PressureDescription) if f.name.endswith("_limit")), LIMIT),
@@ -394,6 +435,7 @@ BAROMETER_NOT_YET = {
     [
         (AccelerometerDescription, OF_PART, PART_NOT_YET),
         (PressureDescription, OF_BAROMETER, BAROMETER_NOT_YET),
+        (DifferentialDescription, OF_BAROMETER | OF_FLOW, BAROMETER_NOT_YET),
         (PressureMode, OF_MODE, {"name": SETTING}),
     ],
 )
@@ -429,6 +471,17 @@ def test_each_number_of_a_pressure_sensor_changes_the_knowledge(
     assert after[number] != before[number]
     longer = 1.0 / 100.0 - 1.0 / 200.0 if slow else 0.0
     assert after[number] == pytest.approx(expected(before) + longer, rel=2e-4)
+
+
+@pytest.mark.parametrize("key", OF_FLOW)
+def test_each_number_of_a_flow_changes_the_knowledge(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    value, number, expected = OF_FLOW[key]
+    chosen = replace(BASE, air_data=THERMAL)
+    before, part = known(chosen), THERMAL.differential.description()
+    monkeypatch.setattr(DifferentialSettings, "description", lambda _: replace(part, **{key: value}))
+    after = known(chosen)
+    assert after[number] != before[number]
+    assert after[number] == pytest.approx(expected(before), rel=2e-4)
 
 
 def test_noise_is_that_of_the_axis_that_points_ahead() -> None:

@@ -17,6 +17,8 @@ from sensors import (
     AccelerometerDescription,
     AccelerometerSettings,
     AirDataSettings,
+    DifferentialDescription,
+    PressureDescription,
     PressureSensor,
     PressureSettings,
     Streams,
@@ -32,6 +34,12 @@ G0 = 9.80665
 PARTS = {
     "accelerometer": ["adxl345", "adxl359", "bmi088", "h3lis331dl", "icm-42688-p", "lsm6dso32", "mpu-6050"],
     "pressure": ["bmp280", "bmp388", "bmp390", "bmp581", "dps368", "lps22df", "ms5611"],
+    "differential": ["dlvr-l10d", "ms4525do", "ms4525do-005d", "sdp33"],
+}
+KINDS = {
+    "accelerometer": AccelerometerDescription,
+    "pressure": PressureDescription,
+    "differential": DifferentialDescription,
 }
 
 # part, range g, noise density x, y, z µg/√Hz, least significant bit mg. LSM6DSO32 DocID032891 r1 table 3; ADXL345
@@ -199,11 +207,12 @@ def of_so_many(a, count=32):
 
 
 def test_all_shipped_parts_are_listed_and_read():
-    assert sensors.presets() == sorted(PARTS["accelerometer"] + PARTS["pressure"])
-    for name in sensors.presets():
-        part = preset(name)
-        assert part.name == name
-        assert isinstance(part, AccelerometerDescription) == (name in PARTS["accelerometer"])
+    assert sensors.presets() == sorted(name for names in PARTS.values() for name in names)
+    for kind, names in PARTS.items():
+        for name in names:
+            part = preset(name)
+            assert part.name == name
+            assert type(part) is KINDS[kind]
 
 
 @pytest.mark.parametrize(("name", "range_g", "density_ug", "lsb_mg"), ACCELEROMETERS)
@@ -538,7 +547,7 @@ def test_parts_without_a_filter_refuse_one(name):
         preset(name).select(iir=2)
 
 
-@pytest.mark.parametrize("name", PARTS["pressure"])
+@pytest.mark.parametrize("name", [*PARTS["pressure"], *PARTS["differential"]])
 def test_every_setting_of_a_pressure_sensor_exists_or_is_refused(name):
     part = preset(name)
     coefficients = [coefficient for coefficient, _ in part.iir_weights]
@@ -577,7 +586,7 @@ def test_three_draws_of_an_accelerometer(name):
     assert drawn == pytest.approx(1.0, abs=0.3)
 
 
-@pytest.mark.parametrize("name", PARTS["pressure"])
+@pytest.mark.parametrize("name", [*PARTS["pressure"], *PARTS["differential"]])
 def test_three_draws_of_a_pressure_sensor(name):
     part = preset(name)
     ideal = PressureSensor(part, Streams(1), unit="ideal")
@@ -598,7 +607,7 @@ def test_three_draws_of_a_pressure_sensor(name):
 # -- sources ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", [*PARTS["accelerometer"], *PARTS["pressure"]])
+@pytest.mark.parametrize("name", sensors.presets())
 def test_every_number_has_a_source(name):
     """Which says something and names neither a path nor an address."""
     file = sheet(name)

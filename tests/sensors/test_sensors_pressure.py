@@ -22,7 +22,7 @@ from sensors import (
 from sensors.filters import DigitalFilter
 from sensors.settings import Fault, ThermalSettings
 
-PARTS = [name for name in presets() if isinstance(preset(name), PressureDescription)]
+PARTS = [name for name in presets() if type(preset(name)) is PressureDescription]
 
 
 def _silent(name="bmp390", **choice):

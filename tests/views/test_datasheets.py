@@ -38,7 +38,9 @@ def test_a_preset_shows_every_value_with_unit_and_source(name: str, capsys: Capt
     out = capsys.readouterr().out
     head, body = out.split("\n\n", 1)
     file = sheet(name)
-    assert head.splitlines() == [f"{name}: {file['part']}", file["document"]]
+    title, document, *reach = head.splitlines()
+    assert (title, document) == (f"{name}: {file['part']}", file["document"])
+    assert bool(reach) == (file["kind"] == "differential")
     assert widest(body) <= 80
     assert body.count("…") == sum(source.count("…") for source in file["sources"].values())  # nothing is cut
     flat = re.sub(r"\W+", "", body)
@@ -47,6 +49,17 @@ def test_a_preset_shows_every_value_with_unit_and_source(name: str, capsys: Capt
     for source in file["sources"].values():
         assert re.sub(r"\W+", "", source)[:12] in flat
     assert "_" not in "".join(line.split("  ")[0] for line in body.splitlines())
+
+
+def test_a_differential_part_says_at_which_airspeed_it_ends(capsys: Capture) -> None:
+    """1 psi is Mach 0.308 in the standard air: 6895 Pa of 101 325 (NACA 1135, p_t/p = 1.0644 at Mach 0.30)."""
+    datasheets.print_preset("ms4525do")
+    assert "It ends at 104.9 m/s of airspeed at sea level and 121.1 m/s at 3000 m.\n" in capsys.readouterr().out
+    datasheets.print_preset("sdp33")
+    assert "where it reads 27 % less than the difference." in capsys.readouterr().out
+    rows = {row["name"]: row["part"] for row in datasheets.preset_rows()}
+    assert rows["sdp33"].endswith("; to 48 m/s")
+    assert "m/s" not in rows["bmp390"]
 
 
 def test_units_of_a_preset_are_those_that_are_read(capsys: Capture) -> None:

@@ -32,7 +32,7 @@ def sensors(
         str | None, typer.Option("--map", metavar="OURS=THEIRS,...", help="Your columns, as t=time,fx=ax*9.80665.")
     ] = None,
     budget: Annotated[
-        bool, typer.Option("--budget", help="Error budget of the airspeed of a pair, in place of the bench.")
+        bool, typer.Option("--budget", help="Error budget of the airspeed of a pair or a differential part.")
     ] = False,
     override: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Of the budget: a scenario's key.")
@@ -112,17 +112,26 @@ def _budget(
     plots: bool,
     as_json: bool,
 ) -> None:
-    """Print the error budget of a pair, by default the one of the packaged scenarios; write it where that is asked."""
-    from sensors.catalogue import pressure_sensor
+    """Print the error budget of a pair, by default the one of the packaged scenarios; write it where that is asked.
+
+    Of a differential part it is that of a head with it.
+    """
+    from sensors import DifferentialDescription
+    from sensors.catalogue import preset, pressure_sensor
     from uavsim.scenario import load_scenario
     from uavsim.studies.error_budget import of_scenario
     from uavsim.views import documents, error_budget, terminal
 
-    if settings["preset"] is not None:
-        with user_input():
-            pressure_sensor(str(settings["preset"]))
     given = {key: value for key, value in settings.items() if value is not None}
     keys = [f"air_data.{port}.{key}={value}" for port in ("total", "static") for key, value in given.items()]
+    if settings["preset"] is not None:
+        with user_input():
+            name = str(settings["preset"])
+            if isinstance(preset(name), DifferentialDescription):
+                keys = ["air_data.kind=differential"]
+                keys += [f"air_data.differential.{key}={value}" for key, value in given.items()]
+            else:
+                pressure_sensor(name)
     with user_input():
         found = of_scenario(load_scenario("catapult", overrides=[*keys, *override]))
     if as_json:

@@ -172,15 +172,16 @@ def bound_of(flight: Flight, courses: Courses, kind: type[B]) -> tuple[Array, B]
     rows = (t > start) & (t < courses.t[-1] - STEP)
     total_end, static_end = (readings[name].to_numpy()[rows] - true for name in ("t_total", "t_static"))
     air = scenario.air_data
-    conversions = air.tare_duration * np.array([air.total.description().rate, air.static.description().rate])
-    seen = np.maximum(1.0, np.minimum(conversions, air.tare_duration * air.rate))
-    tare = float(np.hypot(noise.total_sd / np.sqrt(seen[0]), noise.static_sd / np.sqrt(seen[1])))
+    rates = np.array([sensor.description().rate for sensor in air.sensors()])
+    seen = np.maximum(1.0, air.tare_duration * np.minimum(rates, air.rate))
+    static_sd = 0.0 if noise.differential else noise.static_sd  # of the pair's difference
+    tare = float(np.hypot(noise.total_sd / np.sqrt(seen[0]), static_sd / np.sqrt(seen[1])))
     rest = float(np.hypot(noise.accelerometer_sd / np.sqrt(BLOCK * noise.accelerometer_rate), WANDER))
     wings = [e["t"] - true for e in flight.events if e["event"] == "wings_commanded"]
     schedule = Schedule(start, t[rows], total_end, static_end, wings[0] if wings else np.inf)
     speed = np.interp(start, courses.t, courses.airspeed.mean(axis=0))
-    at_rest = (air.cover_off + start) * min(air.rate, air.total.description().rate)
-    sigma = float(np.hypot(np.hypot(noise.total_sd, noise.static_sd) / np.sqrt(max(1.0, at_rest)), tare))
+    at_rest = (air.cover_off + start) * min(air.rate, rates[0])
+    sigma = float(np.hypot(np.hypot(noise.total_sd, static_sd) / np.sqrt(max(1.0, at_rest)), tare))
     square = 2.0 * sigma * GAS_CONSTANT_DRY_AIR * courses.temperature / float(courses.static[:, 0].mean())
     wind_sd = 0.5 * square / speed if speed * speed >= VISIBLE**2 * square else HIDDEN * np.sqrt(square)
     begun = Start(rest, tare, min(float(wind_sd), settings.wind_sd))

@@ -294,7 +294,9 @@ class AirspeedBound:
         pushed = float(np.mean(push))
         self._scaled = noise.accelerometer_scale_sd**2 * abs(pushed**2 - self._pushed**2)
         self._pushed = pushed
-        self._take(total_slopes(speed, static, pushed=push, heat=SEVEN_R * c.temperature), noise.total_sd)
+        relative = 1.0 if noise.differential else 0.0
+        slopes = total_slopes(speed, static, pushed=push, heat=SEVEN_R * c.temperature, relative=relative)
+        self._take(slopes, noise.total_sd)
 
     def _take(self, slopes: Mapping[int, float | Array], sd: float) -> None:
         row = np.zeros((len(self._courses.airspeed), SIZE))

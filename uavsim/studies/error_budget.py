@@ -17,6 +17,9 @@ share of the dynamic pressure, and the thermometer grow as V, and the lag in an 
 | lag | age of the total pressure in a stated acceleration; difference of both ages in a stated climb |
 | force | air column in the tubes and sensitivity of the membranes, times the same acceleration |
 
+Of a head with a differential sensor the pair is that sensor alone: of the static one only the density's share is left.
+Its scale error is a share of q_c, too, and stands in `position`.
+
 All but the conditions come from the descriptions of the parts (`sensors.knowledge`) and the keys of `[air_data]`.
 """
 
@@ -27,7 +30,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sensors import AirDataSettings, HeadKnowledge, known_of_head
+from sensors import AirDataSettings, HeadKnowledge, PressureDescription, known_of_head
 from sensors.knowledge import PortKnowledge
 from uavsim import airdata
 from uavsim.plants.air.weather import at_ground
@@ -130,16 +133,22 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
     by_total, by_static, by_warmth = airdata.airspeed_gradient(total=total, static=c.static, temperature=c.temperature)
     impact = total - c.static
     density = c.static / (airdata.GAS_CONSTANT_DRY_AIR * c.temperature)
-    head, parts = known_of_head(air), (air.total.description(), air.static.description())
+    head, parts = known_of_head(air), tuple(sensor.description() for sensor in air.sensors())
     one, other = head.total.noise_sd, head.static.noise_sd
+    paired = _paired(air)
+    scale = 0.0 if head.difference is None else head.difference.scale_sd
+    if head.difference is not None:
+        by_static = by_static + by_total  # p_t moves with p_s
     pressures = {
         "noise": np.hypot(by_total * one, by_static * other),
         "tare": by_total * _tare_sd(air, head, c, density),
-        "drift": by_total * hypot(*(part.walk for part in parts)) * sqrt(c.since_tare),
+        "drift": by_total * hypot(*(part.walk for part in paired)) * sqrt(c.since_tare),
         "warming": by_total * _warming_sd(air, c),
-        "position": by_total * impact * _position(head.ports, c),
+        "position": by_total * impact * hypot(_position(head.ports, c), scale),
         "lag": by_total * _lag(head.total, head.static, c, density, speed),
-        "force": by_total * c.acceleration * hypot(head.column, head.total.membrane_sd, head.static.membrane_sd),
+        "force": by_total
+        * c.acceleration
+        * hypot(head.column, head.total.membrane_sd, head.static.membrane_sd if len(paired) > 1 else 0.0),
     }
     spread = np.sqrt(sum(np.square(sd) for sd in pressures.values())) / by_total  # Pa
     stop = speed / np.maximum(speed, SLOPE_ENDS * np.sqrt(2.0 * spread / density))
@@ -151,9 +160,15 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
     return Budget((names[0], names[1]), c, speed, terms, np.asarray(all_of_them))
 
 
+def _paired(air: AirDataSettings) -> tuple[PressureDescription, ...]:
+    """Return the parts whose errors are in the pressure difference."""
+    first, static = air.sensors()
+    return (first.description(),) if air.kind == "differential" else (first.description(), static.description())
+
+
 def _tare_sd(air: AirDataSettings, head: HeadKnowledge, c: Conditions, density: float) -> float:
     """Error that the tare leaves in the pair's difference, Pa."""
-    parts = air.total.description(), air.static.description()
+    parts = _paired(air)
     if air.tare == "none":
         return head.difference_sd
     readings = [max(1.0, air.tare_duration * min(air.rate, part.rate)) for part in parts]
@@ -164,7 +179,7 @@ def _tare_sd(air: AirDataSettings, head: HeadKnowledge, c: Conditions, density: 
 def _warming_sd(air: AirDataSettings, c: Conditions) -> float:
     """What the temperature makes of the pair since the tare, Pa."""
     left = air.thermal.self_heating * exp(-air.thermal.powered_for / air.thermal.lag)
-    coefficient = hypot(air.total.description().offset_tc_sd, air.static.description().offset_tc_sd)
+    coefficient = hypot(*(part.offset_tc_sd for part in _paired(air)))
     return coefficient * hypot(left, c.warmer)
 
 

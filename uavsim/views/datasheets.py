@@ -7,8 +7,10 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
+from sensors.catalogue import preset
 from sensors.catalogue import sheet as sheet_of
 from sensors.characterise import Characterisation
+from sensors.differential_description import DifferentialDescription, fastest
 from sensors.noise_fit import Coefficient
 from sensors.promise import Promise
 from sensors.unit import G0
@@ -62,9 +64,13 @@ PRESET_UNITS = {
     "temperature_noise_k": "K",
     "conversion_ms": "ms",
     "rate": "Hz",
+    "calibration_pressure_pa": "Pa",
+    "flow_kg": "kg/s",
+    "flow_pressure_pa": "Pa",
 }
 """Units of a datasheet's values; the others have none."""
 
+HIGH_PRESSURE, HIGH_SOUND = 70_108.5, 328.58  # Pa and m/s, at 3000 m (ISO 2533)
 SKEWED = 0.3  # by how much of half its interval a value may be off the middle and still be printed with ±
 _SUFFIXES = ("_g", "_ug", "_mg", "_percent", "_pa", "_k", "_ms", "_hz")
 _SCALES = {"m/s²": (1e3, "mm/s²"), "Pa": (1.0, "Pa")}  # how a unit is printed
@@ -74,11 +80,20 @@ _SCALES = {"m/s²": (1e3, "mm/s²"), "Pa": (1.0, "Pa")}  # how a unit is printed
 
 
 def preset_rows() -> list[dict[str, str]]:
-    """Name, kind and part of each sensor preset."""
+    """Name, kind and part of each sensor preset, and of a differential one the airspeed at which it ends."""
     from sensors import presets
 
     sheets = {name: sheet_of(name) for name in presets()}
-    return [{"name": name, "kind": sheet["kind"], "part": sheet["part"]} for name, sheet in sheets.items()]
+    return [
+        {"name": name, "kind": sheet["kind"], "part": "; ".join((sheet["part"], *_ends(name)))}
+        for name, sheet in sheets.items()
+    ]
+
+
+def _ends(name: str) -> list[str]:
+    """Return in words at which airspeed a differential part ends; nothing of others."""
+    part = preset(name)
+    return [f"to {fastest(part):.0f} m/s"] if isinstance(part, DifferentialDescription) else []
 
 
 def print_presets() -> None:
@@ -97,12 +112,10 @@ def print_preset(name: str) -> None:
     ValueError
         If there is no such preset.
     """
-    from sensors import preset
-
     part = preset(name)
     sheet, console = sheet_of(name), _console()
     sources = sheet["sources"]
-    _print(console, words((part.name, "bold"), f": {sheet['part']}\n{sheet['document']}\n"))
+    _print(console, words((part.name, "bold"), f": {sheet['part']}\n{sheet['document']}\n{_reach(name)}"))
     table = _sources_table("value")
     for key, value in sheet["values"].items():
         unit = PRESET_UNITS.get(key, "")
@@ -123,6 +136,19 @@ def print_preset(name: str) -> None:
             if f"modes.{key}" in sources:
                 table.add_row(_words(key), sources[f"modes.{key}"])
         _print(console, table)
+
+
+def _reach(name: str) -> str:
+    """Return a line on the airspeeds at which a differential part ends; nothing of others."""
+    part = preset(name)
+    if not isinstance(part, DifferentialDescription):
+        return ""
+    high = fastest(part, pressure=HIGH_PRESSURE, sound=HIGH_SOUND)
+    line = f"It ends at {fastest(part):.1f} m/s of airspeed at sea level and {high:.1f} m/s at 3000 m"
+    if part.calibration_pressure > 0.0:
+        off = part.calibration_pressure / HIGH_PRESSURE
+        line += f", where it reads {100.0 * (1.0 - 1.0 / off):.0f} % less than the difference"
+    return line + ".\n"
 
 
 def _sources_table(*columns: str) -> Table:

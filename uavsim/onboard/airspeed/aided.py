@@ -15,6 +15,12 @@ is of another instant, some milliseconds away. In those it moves by ρ V s Δt; 
 So it is compared across the difference. The integral of the specific force is kept in `speed_gained`, so that a reading
 of the accelerometer costs one sum.
 
+**A differential sensor.** Its channel is Δp (`difference`), and the filter's total pressure is read relative to the
+static one (`energy_model`). Where it reads Δp (1 + κ) all that it can say is V' = V (1 + κ/2), and V̇' is that by as
+much. So the filter's airspeed is V', for which f_x has a scale error of κ/2 more, and σ_κ V/2 goes into what is told.
+What the force would say of κ itself in the stroke, a third of its variance at the best, is not used. A static port that
+is shut is shut for both sensors. Then Δp and the pressure that is shut in are together the total pressure.
+
 **Push.** The specific force bends the membranes of the pressure sensors. The known part of that error is taken off.
 What is not known of its coefficient is the state k until the flight is steady. The scale error of the accelerometer is
 a bias that comes and goes with the push: when the mean force f changes, b gains the variance σ² |Δ(f²)|, σ being the
@@ -28,11 +34,13 @@ soon as the clocks of head and accelerometer agree.
 """
 
 from collections import deque
+from collections.abc import Iterator
 from dataclasses import replace
 from math import hypot, inf, nan, sqrt
 
 from uavsim import airdata
 from uavsim.onboard.airspeed.air import SLOWEST, Air
+from uavsim.onboard.airspeed.difference import Difference, channel_range
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.energy_model import GATE, isentropic, isentropic_speed
 from uavsim.onboard.airspeed.first_climb import FirstClimb
@@ -157,15 +165,16 @@ class AidedFilter(Estimator):
 
     core: type[EnergyFilter] = EnergyFilter
     __slots__ = (
-        "_air", "_angles", "_apart", "_base", "_coldest", "_fastest", "_first_climb", "_flight_force", "_force",
-        "_fresh", "_gained", "_gated", "_grown", "_head", "_heard", "_lift", "_longest", "_muted", "_noise",
-        "_on_rail", "_onset", "_pause", "_plain", "_plain_tare", "_position", "_position_share", "_push", "_push_end",
-        "_push_variance", "_rail", "_read", "_rest", "_rest_sd", "_rows", "_scale_variance", "_settings", "_shock",
-        "_stamps", "_start_wind", "_static_age", "_static_ends", "_static_spikes", "_static_variance", "_static_within",
-        "_steady_from", "_steps", "_stroke", "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_throttle",
-        "_total_age", "_total_ends", "_total_spikes", "_total_variance", "_total_within", "_u", "_unfolding", "_w",
-        "_waiting", "_warmed", "_warmed_share", "_warmest", "_wind", "_wind_known", "_wrong", "energy",
-        "flying", "news", "ports", "time",
+        "_air", "_angles", "_apart", "_base", "_coldest", "_difference", "_differential", "_fastest", "_first_climb",
+        "_flight_force", "_force", "_fresh", "_gained", "_gated", "_grown", "_head", "_heard", "_lift", "_longest",
+        "_muted", "_noise", "_on_rail", "_onset", "_pair_variance", "_pause", "_plain", "_plain_tare", "_position",
+        "_position_share", "_push", "_push_end", "_push_variance", "_rail", "_read", "_rest", "_rest_sd", "_rows",
+        "_scale_share", "_scale_variance", "_settings", "_shock", "_stamps", "_start_wind", "_static_age",
+        "_static_ends", "_static_spikes", "_static_variance", "_static_within", "_steady_from", "_steps", "_stroke",
+        "_sudden", "_t", "_tare", "_tare_end", "_temperature_share", "_throttle", "_total_age", "_total_ends",
+        "_total_spikes", "_total_variance", "_total_within", "_u", "_unfolding", "_w", "_waiting", "_warmed",
+        "_warmed_share", "_warmest", "_warmth", "_wind", "_wind_known", "_wrong", "energy", "flying", "news", "ports",
+        "time",
     )  # fmt: skip
 
     def __init__(self, settings: EstimatorSettings, noise: NoiseModel, tare_window: TareWindow | None = None) -> None:
@@ -183,7 +192,10 @@ class AidedFilter(Estimator):
         self._static_age = 0.5 * noise.static_window + noise.static_lag
         self._total_variance = max(noise.total_sd, MODEL) ** 2
         self._static_variance = max(noise.static_sd, MODEL) ** 2
-        self._scale_variance = noise.accelerometer_scale_sd**2
+        self._pair_variance = self._total_variance + (0.0 if noise.differential else self._static_variance)
+        self._difference, self._differential = Difference(noise.differential), noise.differential
+        self._scale_share = 0.5 * noise.difference_scale_sd
+        self._scale_variance = noise.accelerometer_scale_sd**2 + self._scale_share**2
         self._temperature_share = 0.5 * noise.temperature_sd
         self._warmed_share = 0.5 * noise.thermometer_recovery_sd
         self._on_rail = aided.on_rail
@@ -196,7 +208,7 @@ class AidedFilter(Estimator):
         self._sudden = max(SUDDEN, SUDDEN_SD * sd)
         self._total_spikes, self._static_spikes = Spikes(), Spikes()
         self._watch_sensors(noise)
-        self._total_within = within(noise.total_range, noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._total_within = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._static_within = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._air = Air(aided, self._waiting.scale, self._waiting.lightness)
         self._wind, self._angles, self._head = RailWind(aided, noise.head), FlowAngles(aided), noise.head
@@ -204,7 +216,7 @@ class AidedFilter(Estimator):
         self._wrong, self._throttle, self._position_share = not noise.head.none, 0.0, 0.0
         self._position = noise.head.error / (1.0 - noise.head.error)
         self._warmed = 0.2 * noise.thermometer_recovery
-        self._onset = Onset(self._total_variance + self._static_variance, self._tare_end, settings.wind_sd)
+        self._onset = Onset(self._pair_variance, self._tare_end, settings.wind_sd)
         self._unfolding = Unfolding(aided)
         self.ports = Ports(self._settings.aided, self._air, noise, self._total_variance, self._static_variance)
         self.news = self.ports.news
@@ -268,14 +280,15 @@ class AidedFilter(Estimator):
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> Estimate | None:
         """Filter the pressures by themselves: on the rail, and after the filter has ended."""
+        channel = self._difference.read(p_total, p_static)
         if self._gated < inf:
             reach = self._sudden + STEEP * (self._pause if t - self._t > self._pause else max(t - self._t, 0.0))
             self._t = t
-            total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
+            total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
             p_total, p_static = p_total if total else nan, p_static if static else nan
             if JUMPED in (total, static):
                 self._gated = max(self._gated, t + WILD)
-        self._rail.add(t, p_total, p_static, temperature, t_total, t_static)
+        self._rail.add(t, channel, p_static, temperature, t_total, t_static)
         estimate = self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
         if estimate is None:
             return None
@@ -407,13 +420,18 @@ class AidedFilter(Estimator):
                 self._muted[1], self._heard[2] = True, -inf
             self.ports.dead_at_rest(t, energy, channel, kind, (0.0, self._settings.wind_sd**2))
         self._stroke.begin(
-            () if broken else self._rows,
+            () if broken else self._channels(),
             tare_end=self._tare_end if self._noise.covered else -inf,
             end=start,
             variance=self._total_variance,
             wind=most_wind(*self._start_wind),
             density=energy.p / self._air.gas,
         )
+
+    def _channels(self) -> Iterator[Row]:
+        """Return the rows that were kept, each with its total channel in the place of the total pressure."""
+        read = Difference(self._differential).read
+        return ((row[0], read(row[1], row[2]), *row[2:]) for row in self._rows)
 
     def _climbed(self, reading: float, before: float) -> None:
         """Judge by a static pressure, Pa, whether its port lives; the last one was of a time `before`, s."""
@@ -440,7 +458,10 @@ class AidedFilter(Estimator):
         since, gained = self.time - begun, self._speed_since_launch()
         rest = self._rest_sd * since
         variance = self._settings.wind_sd**2 + self._w - w + rest * rest + self._scale_variance * gained * gained
-        self.ports.not_risen(self._t, self.energy, kind, self._total_spikes.last, (gained, variance))
+        held = self._total_spikes.last
+        if self._differential:
+            held += self._difference.static - self._difference.zero
+        self.ports.not_risen(self._t, self.energy, kind, held, (gained, variance))
 
     def _speed_since_launch(self) -> float:
         """Return what the force has given since the launch at the filter's instant, m/s, that at rest taken off."""
@@ -488,8 +509,7 @@ class AidedFilter(Estimator):
 
     def _on_the_rail(self, end: float) -> tuple[float, float] | None:
         """Return the pair's mean difference at rest until `end`, s, the head being open, and its variance."""
-        each = self._total_variance + self._static_variance
-        return rest_difference(self._rows, start=self._tare_end, end=end, each=each)
+        return rest_difference(self._rows, start=self._tare_end, end=end, each=self._pair_variance)
 
     def _look_at_wind(
         self, start: float, static: float, density: float, tare_variance: float
@@ -591,6 +611,7 @@ class AidedFilter(Estimator):
             difference_sd=difference_sd,
             difference_walk=noise.walk,
             acceleration_sd=noise.acceleration_sd,
+            relative=self._differential,
         )
 
     def _start(self, start: float, patience: float, steady_from: float) -> None:
@@ -623,7 +644,8 @@ class AidedFilter(Estimator):
         if ports.seen_total is not None or ports.seen_static is not None:
             ports.judge(self._t, energy, self.time, self._u + self._grown)
         before, self._t = self._t, t
-        heard, given = self._heard, (p_total, p_static, temperature)
+        channel = self._difference.read(p_total, p_static) if self._differential else p_total
+        heard, given = self._heard, (channel, p_static, temperature)
         if self._coldest <= temperature <= self._warmest:
             if self._warmed > 0.0:
                 temperature /= 1.0 + 5.0 * self._warmed * energy.v * energy.v / air.heat
@@ -635,25 +657,25 @@ class AidedFilter(Estimator):
             temperature = nan
         air.at(energy.p, energy.s)
         low, high = self._total_within
-        if not low <= p_total <= high:
-            p_total = nan
+        if not low <= channel <= high:
+            channel = nan
         low, high = self._static_within
         if not low <= p_static <= high:
             p_static = nan
         reach = self._sudden + (STEEP if self.time > self._steady_from else STROKE) * (t - before)
-        total, static = self._total_spikes.take(p_total, reach), self._static_spikes.take(p_static, reach)
+        total, static = self._total_spikes.take(channel, reach), self._static_spikes.take(p_static, reach)
         if JUMPED in (total, static) and self.time > self._steady_from:
             ports.jumped(t, energy, (self.time, self._u + self._grown), total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
         if self._first_climb.open and new_static > 0:
             self._climbed(p_static, heard[1])
-        heard[0], ports.raw_total = (t, p_total) if new_total > 0 else (heard[0], ports.raw_total)
+        heard[0] = t if new_total > 0 else heard[0]
         heard[1], ports.raw_static = (t, p_static) if new_static > 0 else (heard[1], ports.raw_static)
         late = t - self._pause
         if self._gained.newest < late or min(heard) < late or True in self._muted:
             self._listen(t, late, given, (end_total, end_static))
-        nis_total, nis_static = self._take(p_total, p_static, end_total, end_static, new_total > 0, new_static > 0)
+        nis_total, nis_static = self._take(channel, p_static, end_total, end_static, new_total > 0, new_static > 0)
         raw = nan
         if total and static and temperature > 0.0:
             difference = p_total - self._plain_tare - p_static
@@ -682,7 +704,7 @@ class AidedFilter(Estimator):
     def _take(
         self, p_total: float, p_static: float, t_total: float, t_static: float, new_total: bool, new_static: bool
     ) -> tuple[float, float]:
-        """Take what is new of a reading of the head; return the normalised innovations squared."""
+        """Take what is new of a reading of the head, its channels; return the normalised innovations squared."""
         nis_total = nis_static = nan
         to, at = t_total - self._total_age, t_static - self._static_age
         if new_total and new_static and self._steady(to, at):
@@ -717,13 +739,13 @@ class AidedFilter(Estimator):
             self._push_variance = energy.know_push()
         gained, variance = self._go(to, dt)
         pushed = self._pushed(t_total)
-        tared = p_total - self._tare - self._noise.acceleration * pushed
+        tared = p_total - self._tare - self._difference.zero - self._noise.acceleration * pushed
         unknown = 0.0
         if self._wrong:
             if self._lift == self._lift:
                 self._angles.lift = self._lift
             above, off, unknown = self._off()
-            tared, p_static = tared - above, p_static - off
+            tared, p_static = tared - above + (off if self._differential else 0.0), p_static - off
         nis_static, nis_total = energy.fly(
             dt,
             gained,
@@ -741,7 +763,7 @@ class AidedFilter(Estimator):
             self._fresh = self._t
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, self._lift
-        ports.seen_total = tared, nis_total
+        ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
         return nis_total, nis_static
 
     def _feel_shock(self, to: float) -> None:
@@ -851,14 +873,23 @@ class AidedFilter(Estimator):
             self._not_risen(kind)
         return bool(kind)
 
-    def _measure(self, tared: float, variance: float, pushed: float) -> float:
+    def _of_channel(self, channel: float) -> tuple[float, float, float]:
+        """Return what the total channel says, Pa, the variance of its noise, Pa², and what it is relative to, Pa."""
+        if not self._differential:
+            return channel, self._total_variance, 0.0
+        difference = channel - self._difference.zero
+        if self.ports.static.shut:  # to both sensors: the pressure that is shut in and Δp are the total pressure
+            return difference + self._difference.static, self._total_variance + self._static_variance, 0.0
+        return difference, self._total_variance, self.energy.p
+
+    def _measure(self, tared: float, variance: float, pushed: float, relative: bool) -> float:
         """Correct the filter by a total pressure, Pa, of a variance, Pa²; on the rail it has the side wind in it."""
         energy, heat = self.energy, self._air.heat
         if not self._wind.on:
             return energy.total(tared, variance, pushed, heat)
         if self._wrong:
             variance += self._wind.unknown(energy.v, energy.p, heat)
-        return self._wind.total(energy, tared, variance, pushed, heat)
+        return self._wind.total(energy, tared, variance, pushed, heat, relative=relative)
 
     def _take_total(self, reading: float, end: float) -> float:
         energy, air = self.energy, self._air
@@ -867,22 +898,25 @@ class AidedFilter(Estimator):
             return nan
         if self._stroke.open and self._shut_in_stroke(reading):
             return nan
-        if not self._onset.settled and not self._onset.settle(energy, self.time, reading - self._tare, air):
+        read, (reading, each, base) = reading, self._of_channel(reading)
+        onset = self._onset
+        if not onset.settled and not onset.settle(energy, self.time, reading - self._tare + base, air):
             return nan
         pushed = self._pushed(end)
-        variance = self._total_variance + pushed * pushed * self._push_variance
+        variance = each + pushed * pushed * self._push_variance
         if behind > 0.0:  # the filter has taken a later one: as if V had changed by the force and the gust alone
             slope = air.density * energy.v
             reading += slope * (self._u - self._gained.at(self.time - behind)[0] - behind * (energy.b + energy.s))
             variance += slope * slope * air.gust * abs(energy.v) * behind
         tared = reading - self._tare - self._noise.acceleration * pushed
         if self._wrong and not self._wind.on:
-            tared -= self._off()[0]
+            above, off, _ = self._off()
+            tared -= above - off if base else above
         if self.ports.total.faulty:
-            self.ports.hear_total(self._t, energy, end, tared, variance)
+            self.ports.hear_total(self._t, energy, end, read, tared + base, variance)
             return nan
         on_rail = self._wind.on
-        nis = self._measure(tared, variance, pushed)
+        nis = self._measure(tared, variance, pushed, base > 0.0)
         if energy.taken:
             self._fresh = self._t
         if not energy.taken and self.time < self._steady_from:  # it is too early for a fault: the filter is wrong
@@ -891,7 +925,7 @@ class AidedFilter(Estimator):
         if not on_rail and energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
-            self.ports.seen_total = tared, nis
+            self.ports.seen_total = read, tared + (energy.p if base else 0.0), nis
         return nis
 
     def _leave_rail(self) -> None:
@@ -956,7 +990,8 @@ class AidedFilter(Estimator):
         if self._warmed_share > 0.0:
             warmed = self._warmed_share * speed * speed / air.heat * speed
             share = sqrt(share * share + warmed * warmed)
-        sd = sqrt(max(variance, 0.0) + share * share)
+        scale = self._scale_share * speed
+        sd = sqrt(max(variance, 0.0) + share * share + scale * scale)
         total = isentropic(speed, static, air.heat)
         ports = self.ports
         valid = (
@@ -964,6 +999,7 @@ class AidedFilter(Estimator):
             and speed * speed <= LAW_ENDS * air.heat
             and air.measured
             and (sd < COASTED or (t - self._fresh < FRESH and not ports.total.faulty))
-            and not ports.static.faulty  # without it V and the climb are hardly told apart
+            # without it V and the climb are hardly told apart, but for a difference that has been read
+            and not (ports.static.faulty and (ports.static.shut or not self._differential))
         )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static

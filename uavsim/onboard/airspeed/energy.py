@@ -49,6 +49,8 @@ class EnergyFilter(EnergyModel):
         Of k, Pa/(m/s²).
     speed : float
         Airspeed at the start, m/s.
+    relative : bool
+        Whether the total pressure is read relative to the static one, by a differential sensor.
     """
 
     __slots__ = ()
@@ -70,11 +72,13 @@ class EnergyFilter(EnergyModel):
         difference_walk: float,
         acceleration_sd: float,
         speed: float = 0.0,
+        relative: bool = False,
     ) -> None:
         self._bias_time, self._bias_density = bias_time, 2.0 * bias_sd**2 / bias_time
         self._slope_density, self._slope_time = slope_rate**2, slope_time
         self._static_density = static_walk**2
         self._difference_density = difference_walk**2
+        self._relative = 1.0 if relative else 0.0
         self.b = self.d = self.k = self.innovation = 0.0
         self.taken = True
         self.v, self.s, self.p = speed, rest_force, static
@@ -98,6 +102,10 @@ class EnergyFilter(EnergyModel):
         variance, self.kk = self.kk, 0.0
         self.vk = self.bk = self.pk = self.sk = self.dk = 0.0
         return variance
+
+    def read_relative(self, relative: bool) -> None:
+        """Be told whether total pressures are read relative to the static one from here on."""
+        self._relative = 1.0 if relative else 0.0
 
     def restart(self, speed: float, variance: float) -> None:
         """Forget the airspeed for another, m/s, of the given variance, m²/s²."""
@@ -140,14 +148,15 @@ class EnergyFilter(EnergyModel):
         """
         hv, hc = slopes
         c = beside
-        gv = hv * self.vv + self.vp + self.vd + pushed * self.vk + hc * c.of_v
-        gb = hv * self.vb + self.bp + self.bd + pushed * self.bk + hc * c.of_b
-        gp = hv * self.vp + self.pp + self.pd + pushed * self.pk + hc * c.of_p
-        gs = hv * self.vs + self.ps + self.sd + pushed * self.sk + hc * c.of_s
-        gd = hv * self.vd + self.pd + self.dd + pushed * self.dk + hc * c.of_d
-        gk = hv * self.vk + self.pk + self.dk + pushed * self.kk + hc * c.of_k
-        gc = hv * c.of_v + c.of_p + c.of_d + pushed * c.of_k + hc * c.variance
-        spread = hv * gv + gp + gd + pushed * gk + hc * gc + variance
+        hp = 1.0 - self._relative
+        gv = hv * self.vv + hp * self.vp + self.vd + pushed * self.vk + hc * c.of_v
+        gb = hv * self.vb + hp * self.bp + self.bd + pushed * self.bk + hc * c.of_b
+        gp = hv * self.vp + hp * self.pp + self.pd + pushed * self.pk + hc * c.of_p
+        gs = hv * self.vs + hp * self.ps + self.sd + pushed * self.sk + hc * c.of_s
+        gd = hv * self.vd + hp * self.pd + self.dd + pushed * self.dk + hc * c.of_d
+        gk = hv * self.vk + hp * self.pk + self.dk + pushed * self.kk + hc * c.of_k
+        gc = hv * c.of_v + hp * c.of_p + c.of_d + pushed * c.of_k + hc * c.variance
+        spread = hv * gv + hp * gp + gd + pushed * gk + hc * gc + variance
         return self._correct_two(above - self.d - pushed * self.k, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
 
     def predict_beside(

@@ -8,7 +8,9 @@ m/s²; the pair's difference since the tare d, Pa; error k of the known pressure
 
     v̇ = f_x − b − s + gust,    ṗ = −ρ v s,    ρ = p/(R T)
     ḃ = −b/τ_b + noise,        ṡ = −s/τ_s + noise,        ḋ = noise,        k̇ = 0
-    p_s = p + noise,           p_t = p (1 + v²/(7 R T))^(7/2) + d + k (f_x − f_x at rest) + noise
+    p_s = p + noise,           p_t = p [(1 + v²/(7 R T))^(7/2) − r] + d + k (f_x − f_x at rest) + noise
+
+with r = 0, or 1 where a differential sensor reads p_t relative to p_s.
 
 `EnergyModel` is the extended Kalman filter of that, scalar, on the 21 numbers of the covariance. The functions give the
 same expressions element by element, of floats or arrays, to those who want matrices.
@@ -131,7 +133,9 @@ def covariance_at_rest(
     }
 
 
-def total_pressure(v: Value, p: Value, d: Value, k: Value, *, pushed: Value, heat: float) -> Value:
+def total_pressure(
+    v: Value, p: Value, d: Value, k: Value, *, pushed: Value, heat: float, relative: float = 0.0
+) -> Value:
     """Return the total pressure that is read without noise, Pa.
 
     Parameters
@@ -142,15 +146,17 @@ def total_pressure(v: Value, p: Value, d: Value, k: Value, *, pushed: Value, hea
         Specific force above that at rest, m/s².
     heat : float
         7 R T, m²/s².
+    relative : float
+        0 of an absolute sensor; 1 of a differential one, and then it is the pressure above the static one.
     """
     power: Value = (1.0 + v * v / heat) ** 3.5
-    return p * power + d + pushed * k
+    return p * (power - relative) + d + pushed * k
 
 
-def total_slopes(v: Value, p: Value, *, pushed: Value, heat: float) -> dict[int, Value | float]:
+def total_slopes(v: Value, p: Value, *, pushed: Value, heat: float, relative: float = 0.0) -> dict[int, Value | float]:
     """Return the total pressure's derivatives that are not 0, by state; the arguments are those of `total_pressure`."""
     y = 1.0 + v * v / heat
-    hv, hp = 7.0 * p / heat * v * y**2.5, y**3.5
+    hv, hp = 7.0 * p / heat * v * y**2.5, y**3.5 - relative
     return {V: hv, P: hp, D: 1.0, K: pushed}
 
 
@@ -186,15 +192,16 @@ class EnergyModel:
     """
 
     __slots__ = (
-        "_bias_density", "_bias_time", "_difference_density", "_slope_density", "_slope_time", "_static_density", "b",
-        "bb", "bd", "bk", "bp", "bs", "d", "dd", "dk", "innovation", "k", "kk", "p", "pd", "pk", "pp", "ps", "s", "sd",
-        "sk", "ss", "taken", "v", "vb", "vd", "vk", "vp", "vs", "vv",
+        "_bias_density", "_bias_time", "_difference_density", "_relative", "_slope_density", "_slope_time",
+        "_static_density", "b", "bb", "bd", "bk", "bp", "bs", "d", "dd", "dk", "innovation", "k", "kk", "p", "pd", "pk",
+        "pp", "ps", "s", "sd", "sk", "ss", "taken", "v", "vb", "vd", "vk", "vp", "vs", "vv",
     )  # fmt: skip
 
     _bias_density: float  # what b, s, p and d gain in variance a second
     _slope_density: float
     _static_density: float
     _difference_density: float
+    _relative: float  # r: 1 where the total pressure is read relative to the static one
     _bias_time: float  # τ_b and τ_s, s
     _slope_time: float
     v: float
@@ -384,7 +391,7 @@ class EnergyModel:
         power = y * y * sqrt(y)
         curvature = 7.0 * p / heat * power
         hv = curvature * v
-        hp = power * y
+        hp = power * y - self._relative
         bend = curvature * vv
         if bend * bend > CURVED * variance:
             return self._curved(reading, variance, pushed, heat)
@@ -411,7 +418,7 @@ class EnergyModel:
             power = y * y * sqrt(y)
             curvature = 7.0 * at_p / heat * power
             hv = curvature * at_v
-            hp = power * y
+            hp = power * y - self._relative
             gv = hv * self.vv + hp * self.vp + self.vd + pushed * self.vk
             gp = hv * self.vp + hp * self.pp + self.pd + pushed * self.pk
             gd = hv * self.vd + hp * self.pd + self.dd + pushed * self.dk
@@ -597,7 +604,7 @@ class EnergyModel:
         power = y * y * sqrt(y)
         curvature = 7.0 * p / heat * power
         hv = curvature * v
-        hp = power * y
+        hp = power * y - self._relative
         bend = curvature * vv
         straight = bend * bend <= CURVED * total_variance
         nis_total = 0.0

@@ -89,7 +89,10 @@ class NoiseModel:
     thermometer_recovery, thermometer_recovery_sd : float
         Share r of the flow's warming that the thermometer reads, T (1 + 0.2 r M²), and its standard deviation.
     differential : bool
-        Whether the total pressure is the sum of the static one and of a difference that one sensor reads.
+        Whether the total pressure is the sum of the static one and of a difference that one sensor reads. Then
+        `total_sd`, `total_range` and `total_step` are those of the difference.
+    difference_scale_sd : float
+        Scale error of that difference, a fraction.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
@@ -133,6 +136,7 @@ class NoiseModel:
     thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     thermometer_recovery_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     differential: bool = False
+    difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
 
 
 def within(ends: tuple[float, float], step: float, least: float, most: float) -> tuple[float, float]:

@@ -22,6 +22,10 @@ is Gaussian about 0 and clipped, E[V²] = (2/ρ)·σ/√(2π) = 0.399·V*², an 
 0.8·V*, σ_V = V*²/(2·max(V, 0.8·V*)), gives 0.625·V* there and joins the two. An airspeed is called valid from 2·V* on,
 4σ of p_t − p_s; below V* nothing better is known than what the wind may be, so σ_V is never above `wind_sd` there.
 
+Of a differential sensor (`difference`) the total channel is Δp = p_t − p_s itself, filtered alike; p_t is the filtered
+static pressure and Δp together, and of the static sensor's noise only the share of p_s in the density is left,
+(p_t/p_s − 1)² P_s below. A scale error σ_k of Δp adds V·σ_k/2.
+
 Compressibility changes the slope, not the law: for the isentropic relation dV/dp_t = 1/(ρ₀·V) with the stagnation
 density ρ₀ = ρ·(p_t/p_s)^(1/γ), and for either relation dV/dp_s = −(p_t/p_s)·dV/dp_t, which holds the share of p_s in
 the density. Temperature adds dV/dT = V/(2T). So, with τ² the variance of the tare,
@@ -33,6 +37,7 @@ from collections.abc import Callable
 from math import inf, isnan, nan, sqrt
 
 from uavsim import airdata
+from uavsim.onboard.airspeed.difference import Difference, channel_range
 from uavsim.onboard.airspeed.interface import NoiseModel, within
 from uavsim.onboard.airspeed.kinds import one_of_ours
 from uavsim.onboard.airspeed.random_walk import Channel, RandomWalk, process_noise
@@ -76,12 +81,15 @@ class PaperFilter(Estimator):
         "_clipped",
         "_compressible",
         "_cover",
+        "_difference",
         "_fastest",
         "_heating",
         "_law_ends",
         "_position",
         "_relation",
+        "_relative",
         "_scale",
+        "_scale_share",
         "_stamps",
         "_star",
         "_static",
@@ -104,6 +112,8 @@ class PaperFilter(Estimator):
         self, settings: EstimatorSettings, noise: NoiseModel, tare_window: tuple[float, float] | None = None
     ) -> None:
         self._total, self._static = self._channels(settings, noise)
+        self._difference, self._relative = Difference(noise.differential), 1.0 if noise.differential else 0.0
+        self._scale_share = 0.5 * noise.difference_scale_sd
         self._compressible = settings.model == "compressible"
         self._relation: Callable[[float, float, float], float] = (
             airdata.compressible_airspeed if self._compressible else airdata.bernoulli_airspeed
@@ -119,7 +129,7 @@ class PaperFilter(Estimator):
         self._temperature_share = 0.5 * noise.temperature_sd
         self._wind_sd = settings.wind_sd
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
-        self._total_ends_at = within(noise.total_range, noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._total_ends_at = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._static_ends_at = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self._clipped = False
         self._position = noise.head.error / (1.0 - noise.head.error)
@@ -170,11 +180,14 @@ class PaperFilter(Estimator):
         self._t = t
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total, end_static == end_static  # not NaN
-        p_total, clipped = _measured(p_total, *self._total_ends_at)
+        reading = self._difference.read(p_total, p_static)
+        reading, clipped = _measured(reading, *self._total_ends_at)
+        if reading != reading:
+            p_total = nan
         p_static, clipped_too = _measured(p_static, *self._static_ends_at)
         self._clipped = clipped or clipped_too
         if new_total:
-            self._total.add(p_total)
+            self._total.add(reading)
         if new_static:
             self._static.add(p_static)
         if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
@@ -188,6 +201,8 @@ class PaperFilter(Estimator):
         below = self._position * (p_total - tare - p_static)
         raw = self._scale * self._relation(p_total - tare, p_static - below, temperature) if measured else nan
         total, static = self._total.value - tare, self._static.value
+        if self._relative:
+            total += static - self._difference.zero
         if self._position:  # the static port's share is taken off, at any airspeed the same
             static -= self._position * (total - static)
         known = LEAST_PRESSURE <= static <= MOST_PRESSURE
@@ -212,7 +227,8 @@ class PaperFilter(Estimator):
     def _spread(self, speed: float, ratio: float, static: float) -> tuple[float, bool]:
         """Return the airspeed's standard deviation and whether it is valid, by the law above."""
         temperature = self._temperature
-        sigma = sqrt(self._total.variance + self._tare_variance + ratio * ratio * self._static.variance)
+        share = ratio - self._relative
+        sigma = sqrt(self._total.variance + self._tare_variance + share * share * self._static.variance)
         star_squared = self._star * temperature * sigma / static
         star = sqrt(star_squared)
         if self._compressible and speed > 0.0:  # ρ/ρ₀ = (T_t/T)/(p_t/p_s)
@@ -221,7 +237,8 @@ class PaperFilter(Estimator):
         at = speed if speed > floor else floor
         pressure_share = 0.5 * star_squared / at if at > 0.0 else 0.0  # at = 0 only without any noise
         temperature_share = self._temperature_share * speed / temperature
-        sd = sqrt(pressure_share * pressure_share + temperature_share * temperature_share)
+        scale_share = self._scale_share * speed
+        sd = sqrt(pressure_share * pressure_share + temperature_share * temperature_share + scale_share * scale_share)
         if speed < star and sd > self._wind_sd:
             sd = self._wind_sd
         subsonic = speed * speed <= self._law_ends * temperature
@@ -234,7 +251,7 @@ class PaperFilter(Estimator):
         self._static.restart()
 
     def resume(self, total: float, static: float, reach: float) -> None:
-        """Go on after a pause in which others have read the pressures: anew, unless both are within `reach`, Pa."""
+        """Go on after a pause in which others have read both channels: anew, unless both are within `reach`, Pa."""
         if abs(total - self._total.value) <= reach and abs(static - self._static.value) <= reach:
             self.forget_time()
         else:

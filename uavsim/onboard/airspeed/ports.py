@@ -22,6 +22,9 @@ from uavsim.onboard.airspeed.rail import rows_allowed
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
 
+# share of a static reading's variance that is left in the filter's own static pressure in steady flight. By hand: a
+# twentieth is what the filter claims at 100 Hz and 3.7 Pa; what is left is no white noise
+SMOOTHED = 0.1
 MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldest go, so that memory is constant
 # static pressures in a row beyond the gate: no longer spikes, but a port or a filter that is wrong. By hand, as
 # `stamps.AGREED`; docs/airspeed.md, "What no reading can do", holds the check
@@ -52,7 +55,8 @@ class Ports:
     total, static : TotalWatch, StaticWatch
         The watch over each port.
     seen_total : tuple or None
-        A total pressure that the filter has taken and nobody has judged yet: tared, Pa, and its NIS.
+        A total pressure that the filter has taken and nobody has judged yet: the channel as it was read
+        (`difference`), the pressure tared, Pa, and its NIS.
     seen_static : tuple or None
         A static pressure so: Pa, its instant, s, and the mean of −f_z since the one before, m/s².
     misses : int
@@ -60,8 +64,8 @@ class Ports:
     between : float
         While nobody can tell whether the flagged total port or the accelerometer is wrong: the square of what lies
         between the two airspeeds, m²/s², which is in the bar; else 0.
-    raw_total, raw_static : float
-        The last pressures as they came, Pa: a sensor that repeats itself does so before anything is taken off.
+    raw_static : float
+        The last static pressure as it came, Pa: a sensor that repeats itself does so before anything is taken off.
     torn : bool
         Whether readings of specific force have been missing since the ports were judged last.
     """
@@ -77,7 +81,6 @@ class Ports:
         "misses",
         "news",
         "raw_static",
-        "raw_total",
         "seen_static",
         "seen_total",
         "static",
@@ -103,16 +106,20 @@ class Ports:
         white = noise.accelerometer_sd**2 / noise.accelerometer_rate
         offset, lift_offset = noise.accelerometer_offset_sd, noise.lift_offset_sd
         total, static = rows_allowed(noise)
-        self.total = TotalWatch(self._aided, self._total_variance, noise.walk, *total, offset, white)
+        # a total pressure of a differential sensor is relative to the filter's static one, or to the static reading
+        variance, row_variance = self._total_variance, self._total_variance
+        if noise.differential:
+            variance, row_variance = variance + SMOOTHED * self._static_variance, variance + self._static_variance
+        self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white, row_variance)
         gusts = self._aided.gust_sd > self._aided.gust_floor
         self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset, gusts)
         self._lift, self.misses, self.torn, self.between = GRAVITY, 0, False, 0.0
-        self.raw_total = self.raw_static = nan
+        self.raw_static = nan
         self.forget_seen()
 
     def forget_seen(self) -> None:
         """Judge nothing of what was read last."""
-        self.seen_total: tuple[float, float] | None = None
+        self.seen_total: tuple[float, float, float] | None = None
         self.seen_static: tuple[float, float, float] | None = None
 
     def tell(self, t: float, event: str, channel: str, kind: str = "") -> None:
@@ -145,12 +152,12 @@ class Ports:
             if kind or self.misses >= PERSISTENT:
                 self._flag_static(t, energy, kind or "jump")
         if self.seen_total is not None:
-            tared, nis = self.seen_total
+            read, tared, nis = self.seen_total
             self.seen_total = None
             if self.static.faulty:
                 return
             air = self._air
-            kind = self.total.take(energy, time, gained, self._lift, tared, nis, air, self.raw_total)
+            kind = self.total.take(energy, time, gained, self._lift, read, tared, nis, air)
             if kind:
                 self._blame(t, energy, (time, gained), kind)
 
@@ -191,6 +198,7 @@ class Ports:
     def never_moved(self, t: float, energy: EnergyFilter, rest: float, lost: float, density: float) -> None:
         """Flag a static port that has been shut since before the launch; `rest` and `lost` as of `FirstClimb`."""
         self.static.flag_at_rest(energy, t, (rest, self._static_variance), lost, density)
+        energy.read_relative(False)
         self.misses = 0
         self.total.port.restart()
         self.tell(t, "airspeed_fault", "static", "frozen")
@@ -199,7 +207,7 @@ class Ports:
         """Flag a total port that has not risen in the stroke; the pressure in it, Pa, and V with its variance."""
         self.total.flag_in_stroke(energy, t, (held, self._total_variance), speed)
         self.tell(t, "airspeed_fault", "total", kind)
-        if kind == "swapped" and not self.static.faulty:
+        if kind == "swapped" and not self.static.faulty and not self._noise.differential:
             self._flag_static(t, energy, kind)
 
     def _flag_total(self, t: float, energy: EnergyFilter, now: tuple[float, float], kind: str) -> None:
@@ -208,13 +216,16 @@ class Ports:
 
     def _flag_static(self, t: float, energy: EnergyFilter, kind: str) -> None:
         self.static.flag(kind, energy, t, self._air.density, self.total.port.frozen.lost)
+        energy.read_relative(self._noise.differential and not self.static.shut)
         self.misses = 0
         self.total.port.restart()
         self.tell(t, "airspeed_fault", "static", kind)
 
     # -- the way back --------------------------------------------------------------------------------------------------
 
-    def hear_total(self, t: float, energy: EnergyFilter, end: float, tared: float, variance: float) -> None:
+    def hear_total(
+        self, t: float, energy: EnergyFilter, end: float, reading: float, tared: float, variance: float
+    ) -> None:
         """Compare a flagged total port with the filter that coasts; take it back when they have agreed for long enough.
 
         Parameters
@@ -225,15 +236,15 @@ class Ports:
             The filter that coasts.
         end : float
             End of the conversion, s.
-        tared, variance : float
-            The pressure, tared, Pa, and the variance of its noise, Pa².
+        reading, tared, variance : float
+            The channel as it came, and the pressure tared, Pa; the variance of its noise, Pa².
         """
         speed = self._air.speed(tared, energy.p)
         slope = self._air.density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
         self.between = difference * difference if self.total.undecided else 0.0
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
-        if self.total.coast(self.raw_total, tared, difference, spread, end):
+        if self.total.coast(reading, tared, difference, spread, end):
             energy.widen_speed(difference * difference)
             self.between = 0.0
             self.tell(t, "airspeed_recovered", "total")
@@ -242,4 +253,5 @@ class Ports:
         """Compare a flagged static port in the same way: its reading of an instant, s, and how far off it is, Pa."""
         if self.static.coast(at, self.raw_static, reading, difference, energy.pp + self._static_variance):
             energy.widen_static(difference * difference)
+            energy.read_relative(self._noise.differential)
             self.tell(t, "airspeed_recovered", "static")

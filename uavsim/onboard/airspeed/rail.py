@@ -13,6 +13,7 @@ live one does not move either. That is for the stroke (`stroke`).
 
 from math import hypot, inf, isfinite, nan, sqrt
 
+from uavsim.onboard.airspeed.difference import ZERO, channel_range
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row
@@ -36,8 +37,8 @@ WORDS = {
 
 
 def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
-    """Return between which values a total pressure, a static pressure, Pa, and a temperature, K, is a measurement."""
-    (a, b), (c, d), (e, f) = noise.total_range, noise.static_range, noise.temperature_range
+    """Return between which values a total channel, a static pressure, Pa, and a temperature, K, is a measurement."""
+    (a, b), (c, d), (e, f) = channel_range(noise), noise.static_range, noise.temperature_range
     return (
         (max(a, LEAST_PRESSURE), min(b, MOST_PRESSURE)),
         (max(c, LEAST_PRESSURE), min(d, MOST_PRESSURE)),
@@ -143,7 +144,7 @@ class RailCheck:
     def add(
         self, t: float, p_total: float, p_static: float, temperature: float, t_total: float, t_static: float
     ) -> None:
-        """Take a row of the head."""
+        """Take a row of the head, its total channel (`difference`) in the place of the total pressure."""
         if self._first == inf:
             self._first = t
         total, static, warmth = self.sensors.values()
@@ -155,8 +156,9 @@ class RailCheck:
         warmth.add(t, temperature, temperature == temperature or new_static)
         self._total_end = t_total if new_total else self._total_end
         self._static_end = t_static if new_static else self._static_end
-        if t <= self._tare_end and -inf < p_total - p_static < inf:
-            self._sum += p_total - p_static
+        difference = p_total - (ZERO if self._noise.differential else p_static)
+        if t <= self._tare_end and -inf < difference < inf:
+            self._sum += difference
             self._count += 1
 
     def decided(self, t: float) -> bool:
@@ -181,7 +183,7 @@ class RailCheck:
         if not n or not noise.difference_sd > 0.0:
             return 0.0
         mean = self._sum / n
-        sd = hypot(noise.difference_sd, hypot(noise.total_sd, noise.static_sd) / sqrt(n))
+        sd = hypot(noise.difference_sd, hypot(noise.total_sd, 0.0 if noise.differential else noise.static_sd) / sqrt(n))
         most = max(FAR * sd, LEAST_OFFSET)
         return mean if mean < -most or mean > most + (0.0 if noise.covered else STORM) else 0.0
 

@@ -206,14 +206,28 @@ class RailWind:
             self._height += climb * dt
             self._beside.value *= 1.0 + GROWTH * climb * dt / self._height
 
-    def total(self, energy: EnergyFilter, reading: float, variance: float, pushed: float, heat: float) -> float:
-        """Take a total pressure, which is that of V at an angle, as `EnergyFilter.total` does; return the NIS."""
+    def total(
+        self,
+        energy: EnergyFilter,
+        reading: float,
+        variance: float,
+        pushed: float,
+        heat: float,
+        *,
+        relative: bool = False,
+    ) -> float:
+        """Take a total pressure, which is that of V at an angle, as `EnergyFilter.total` does; return the NIS.
+
+        `relative` says whether it is read relative to what the static port reads, by a differential sensor.
+        """
         u, p, c = energy.v, energy.p, self._beside.value
-        felt = self._ports(u, c, p, heat)[0]
-        slopes = (
-            (self._ports(u + SMALL, c, p, heat)[0] - felt) / SMALL,
-            (self._ports(u, c + SMALL, p, heat)[0] - felt) / SMALL,
-        )
+
+        def read(along: float, across: float) -> float:
+            total, static = self._ports(along, across, p, heat)
+            return total - static if relative else total
+
+        felt = read(u, c)
+        slopes = (read(u + SMALL, c) - felt) / SMALL, (read(u, c + SMALL) - felt) / SMALL
         # E[h] is above h of the means by half its curvature times the variances, and scatters by as much
         bend, uu, cc, uc = 7.0 * p / heat, energy.vv, self._beside.variance, self._beside.of_v
         variance += 0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc)

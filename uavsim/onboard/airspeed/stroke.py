@@ -8,8 +8,8 @@ rail, V = u ± w, and a live port's pressure has risen since by ½ρ (u² ± 2uw
 A covered, shut or dead port has not risen at all. Once r is `SURE` standard deviations of a reading, and the pressure
 of `AGREED` readings in a row has risen by less than a quarter of it, the port is none. Of readings of a live port not
 one is that low (11 standard deviations), of a shut one all are. Tubes that have been swapped let the total pressure
-stand still and the static one rise: then both are named. A pressure that has risen by half of r lives, and the test is
-over.
+stand still and the static one rise: then both are named. A differential sensor then reads the same with the other sign.
+A pressure that has risen by half of r lives, and the test is over.
 """
 
 from collections.abc import Iterable
@@ -55,7 +55,7 @@ class StrokeTest:
         Parameters
         ----------
         rows : iterable of tuple
-            Readings of the head.
+            Readings of the head, the total channel (`difference`) in the place of the total pressure.
         tare_end, end : float
             Those of conversions between them count, s.
         variance : float
@@ -87,7 +87,7 @@ class StrokeTest:
         Parameters
         ----------
         total, static : float
-            As they came, Pa.
+            The channels as they came, Pa.
         gained : float
             u at the instant of the reading, m/s.
         unknown : float
@@ -111,7 +111,8 @@ class StrokeTest:
         if self._dead < AGREED:
             return ""
         self.open = False
-        return "swapped" if static - self._static_rest > LIVE * rise else "frozen"
+        swapped = static - self._static_rest > LIVE * rise or risen < -LIVE * rise
+        return "swapped" if swapped else "frozen"
 
 
 def most_wind(wind: float, sd: float) -> float:

@@ -13,7 +13,8 @@ class Tare:
 
     def __init__(self, start: float, end: float, noise: NoiseModel) -> None:
         self._start, self.end = start, end
-        self._total_variance, self._static_variance = noise.total_sd**2, noise.static_sd**2
+        self._total_variance = noise.total_sd**2
+        self._static_variance = 0.0 if noise.differential else noise.static_sd**2
         self._differences = Majority(self._total_variance + self._static_variance)
 
     def add(self, t: float, difference: float, new_total: bool, new_static: bool) -> None:

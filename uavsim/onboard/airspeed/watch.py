@@ -75,6 +75,8 @@ AGREE_SD = 5.0 / 3.0
 # kinds of which the filter has taken nothing, and those after which a port must agree within `AGREE_SD`
 UNTAKEN = ("jump", *MUTE)
 ASTRAY = ("drift", "leak", "jump")
+# kinds of a static port that is shut, to both sensors of a head that has a differential one; others are of its sensor
+SHUT_IN = ("frozen", "swapped")
 # kinds after which it must show the gusts that are declared: a port that is shut and leaks moves, but shows none
 GUSTLESS = ("frozen", "drift", "leak")
 
@@ -113,6 +115,8 @@ class TotalWatch:
         Offset of f_x, m/s².
     force_density : float
         By how much noise of f_x widens its integral, m²/s³.
+    row_variance : float or None
+        Of what `coast` takes, Pa²; None: `variance`.
 
     Attributes
     ----------
@@ -141,6 +145,7 @@ class TotalWatch:
         alike: float = 0.0,
         offset_sd: float = 0.0,
         force_density: float = 0.0,
+        row_variance: float | None = None,
     ) -> None:
         self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
@@ -149,6 +154,8 @@ class TotalWatch:
         self._opened_by = aided.bias_sd**2, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
         self.port = PortMonitor(aided.bias_rate, variance * apart(alike), walk, row, self._declared, offset_sd)
+        if row_variance is not None:
+            self.port.back = Readmission(row_variance * apart(alike), walk, row)
         self.faulty = self._astray = self.undecided = self._silent = self.coasts = False
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
@@ -164,10 +171,10 @@ class TotalWatch:
         t: float,
         gained: float,
         lift: float,
+        read: float,
         reading: float,
         nis: float,
         air: Air,
-        raw: float,
     ) -> str:
         """Take a reading that the filter has taken; return what seems to be wrong, as `PortMonitor.add`.
 
@@ -177,13 +184,11 @@ class TotalWatch:
             At `t`, the reading's instant, s.
         gained, lift : float
             ∫ f_x dt up to there, m/s, and −f_z, m/s².
-        reading : float
-            Tared, Pa.
+        read, reading : float
+            The channel as it came (`difference`), and the pressure tared, Pa.
         nis : float
             Normalised innovation squared.
         air : Air
-        raw : float
-            The reading as it came, Pa.
         """
         port, dt, v = self.port, t - self._t, energy.v
         if dt > GAP:
@@ -219,7 +224,7 @@ class TotalWatch:
                 return "leak"
         elif wanders:
             return "leak"
-        return port.add(raw, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
+        return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
     def _wanders(self, v: float, gained: float, lost: float, lift: float, dt: float) -> bool:
         """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away.
@@ -370,11 +375,11 @@ class StaticWatch:
 
     Attributes
     ----------
-    faulty : bool
-        Whether the port is flagged.
+    faulty, shut : bool
+        Whether the port is flagged, and whether that is because it has been shut.
     """
 
-    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty")
+    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut")
 
     def __init__(
         self,
@@ -387,7 +392,8 @@ class StaticWatch:
     ) -> None:
         self._variance, self._offset_sd, self._gusts = variance * apart(alike), offset_sd, gusts
         self._back = Readmission(variance, walk, row)
-        self._test, self._t, self.faulty = ClimbTest(variance, 0.0, offset_sd, gusts), -inf, False
+        self._test, self._t = ClimbTest(variance, 0.0, offset_sd, gusts), -inf
+        self.faulty = self.shut = False
 
     @property
     def suspect(self) -> bool:
@@ -434,7 +440,7 @@ class StaticWatch:
     def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
         """Flag the port at `t`, s; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
-        self.faulty = True
+        self.faulty, self.shut = True, kind in SHUT_IN
         if kind != "frozen":
             self._back.flag(t, kind=kind)
             return
@@ -455,7 +461,7 @@ class StaticWatch:
         self, energy: EnergyFilter, t: float, held: tuple[float, float], lost: float, density: float
     ) -> None:
         """Flag a port that was shut before the launch: half of what V has lost is the height that it hides."""
-        self.faulty = True
+        self.faulty = self.shut = True
         self._back.flag(t, *held)
         hidden = -0.5 * density * max(energy.v, 1.0) * lost
         energy.leave_static(
@@ -471,5 +477,5 @@ class StaticWatch:
         """While flagged, take a reading as `Readmission.hear` does; True if the flag falls."""
         if not self._back.hear(t, reading, pressure, difference, spread):
             return False
-        self.faulty, self._t = False, -inf
+        self.faulty, self.shut, self._t = False, False, -inf
         return True
