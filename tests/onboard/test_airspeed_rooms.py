@@ -162,7 +162,7 @@ def watched(total, static):
     air.at(90_000.0, 0.0)
     ports = Ports(AidedSettings(), air, NoiseModel(2.0, 3.0, 0.0), 4.0, 9.0)
     ports.total, ports.static = total, static
-    ports.seen_total, ports.seen_static = (91_000.0, 1.3), (90_000.0, 4.99, 9.7)
+    ports.seen_total, ports.seen_static = (91_000.0, 91_000.0, 1.3), (90_000.0, 4.99, 9.7)
     return ports
 
 
@@ -213,7 +213,7 @@ def test_missing_forces_let_the_total_ports_tests_begin_anew():
     ports.judge(5.0, energy(), 4.98, 1.7)
     assert (ports.total.paused, ports.torn) == (1, False)
     assert ports.total.taken[3] == 9.7
-    ports.seen_total, ports.seen_static = (91_000.0, 1.3), (90_000.0, 4.99, nan)
+    ports.seen_total, ports.seen_static = (91_000.0, 91_000.0, 1.3), (90_000.0, 4.99, nan)
     ports.judge(5.01, energy(), 4.99, 1.7)
     assert (ports.total.paused, ports.total.taken[3]) == (1, 9.7)
 
@@ -252,8 +252,8 @@ def test_what_a_flagged_port_says_is_compared_and_doubted_by_that():
     ports.static.coast = lambda *arguments: bool(heard.append(arguments)) or True
     air = ports._air
     tared = total(32.0, air)
-    ports.raw_total, ports.raw_static = tared + 7.0, 90_011.0
-    ports.hear_total(5.0, core, 4.99, tared, 4.5)
+    ports.raw_static = 90_011.0
+    ports.hear_total(5.0, core, 4.99, tared + 7.0, tared, 4.5)
     slope = air.density * 32.0
     (reading, pressure, difference, spread, end), = heard  # fmt: skip
     assert (reading, pressure, end) == (tared + 7.0, tared, 4.99)

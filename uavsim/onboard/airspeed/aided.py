@@ -690,8 +690,8 @@ class AidedFilter(Estimator):
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
         if self._first_climb.open and new_static > 0:
             self._climbed(p_static, heard[1])
-        heard[0], ports.raw_total = (t, channel) if new_total > 0 else (heard[0], ports.raw_total)
-        heard[1], ports.raw_static = (t, p_static) if new_static > 0 else (heard[1], ports.raw_static)
+        heard[0] = t if new_total > 0 else heard[0]
+        heard[1] = t if new_static > 0 else heard[1]
         late = t - self._pause
         if self._gained.newest < late or min(heard) < late or True in self._muted:
             self._listen(t, late, given, (end_total, end_static))
@@ -783,7 +783,7 @@ class AidedFilter(Estimator):
             self._fresh = self._t
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, self._lift
-        ports.seen_total = tared + energy.p if self._differential else tared, nis_total
+        ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
         return nis_total, nis_static
 
     def _feel_shock(self, to: float) -> None:
@@ -918,7 +918,7 @@ class AidedFilter(Estimator):
             return nan
         if self._stroke.open and self._shut_in_stroke(reading):
             return nan
-        reading, each, base = self._of_channel(reading)
+        read, (reading, each, base) = reading, self._of_channel(reading)
         onset = self._onset
         if not onset.settled and not onset.settle(energy, self.time, reading - self._tare + base, air):
             return nan
@@ -933,7 +933,7 @@ class AidedFilter(Estimator):
             above, off, _ = self._off()
             tared -= above - off if base else above
         if self.ports.total.faulty:
-            self.ports.hear_total(self._t, energy, end, tared + base, variance)
+            self.ports.hear_total(self._t, energy, end, read, tared + base, variance)
             return nan
         on_rail = self._wind.on
         nis = self._measure(tared, variance, pushed, base > 0.0)
@@ -946,7 +946,7 @@ class AidedFilter(Estimator):
         if not on_rail and energy.v < 0.0 and energy.taken and energy.v * energy.v > ONE_SIDED * energy.vv:
             energy.restart(-energy.v, energy.vv)  # the pressure is that of −V, too, and an aircraft flies forward
         if self.time > self._steady_from and not self.ports.static.faulty:
-            self.ports.seen_total = tared + (energy.p if base else 0.0), nis
+            self.ports.seen_total = read, tared + (energy.p if base else 0.0), nis
         return nis
 
     def _leave_rail(self) -> None:

@@ -43,6 +43,8 @@ class ClimbTest:
         Static pressure at the start, Pa.
     offset_sd : float
         Offset of f_z, m/s².
+    gusts : bool
+        Whether turbulence is declared: in still air every pull may be a turn's.
 
     Attributes
     ----------
@@ -60,6 +62,7 @@ class ClimbTest:
         "_aa",
         "_ca",
         "_cc",
+        "_gusty",
         "_noise",
         "_pa",
         "_pc",
@@ -75,7 +78,8 @@ class ClimbTest:
         "since",
     )  # fmt: skip
 
-    def __init__(self, variance: float, static: float, offset_sd: float = 0.0) -> None:
+    def __init__(self, variance: float, static: float, offset_sd: float = 0.0, gusts: bool = True) -> None:
+        self._gusty = GUSTY if gusts else 0.0
         self._noise = variance
         self.p = self.held = static
         self._pull = Pull()
@@ -101,7 +105,7 @@ class ClimbTest:
         r, noise = weight * dt, self._noise
         pull = lift - GRAVITY
         self._pull.add(lift, dt)
-        size = self._pull.size - GUSTY
+        size = self._pull.size - self._gusty
         size = size if size > 0.0 else 0.0
         rate = CLIMB_RATE * CLIMB_RATE + size * size * TURNING
         self.c += (pull - self.a) * dt

@@ -55,7 +55,8 @@ class Ports:
     total, static : TotalWatch, StaticWatch
         The watch over each port.
     seen_total : tuple or None
-        A total pressure that the filter has taken and nobody has judged yet: tared, Pa, and its NIS.
+        A total pressure that the filter has taken and nobody has judged yet: the channel as it was read
+        (`difference`), the pressure tared, Pa, and its NIS.
     seen_static : tuple or None
         A static pressure so: Pa, its instant, s, and the mean of −f_z since the one before, m/s².
     misses : int
@@ -63,9 +64,8 @@ class Ports:
     between : float
         While nobody can tell whether the flagged total port or the accelerometer is wrong: the square of what lies
         between the two airspeeds, m²/s², which is in the bar; else 0.
-    raw_total, raw_static : float
-        The last readings of both channels as they came (`difference`), Pa: a sensor that repeats itself does so before
-        anything is taken off.
+    raw_static : float
+        The last static pressure as it came, Pa: a sensor that repeats itself does so before anything is taken off.
     torn : bool
         Whether readings of specific force have been missing since the ports were judged last.
     """
@@ -81,7 +81,6 @@ class Ports:
         "misses",
         "news",
         "raw_static",
-        "raw_total",
         "seen_static",
         "seen_total",
         "static",
@@ -112,14 +111,15 @@ class Ports:
         if noise.differential:
             variance, row_variance = variance + SMOOTHED * self._static_variance, variance + self._static_variance
         self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white, row_variance)
-        self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset)
+        gusts = self._aided.gust_sd > self._aided.gust_floor
+        self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset, gusts)
         self._lift, self.misses, self.torn, self.between = GRAVITY, 0, False, 0.0
-        self.raw_total = self.raw_static = nan
+        self.raw_static = nan
         self.forget_seen()
 
     def forget_seen(self) -> None:
         """Judge nothing of what was read last."""
-        self.seen_total: tuple[float, float] | None = None
+        self.seen_total: tuple[float, float, float] | None = None
         self.seen_static: tuple[float, float, float] | None = None
 
     def tell(self, t: float, event: str, channel: str, kind: str = "") -> None:
@@ -152,12 +152,12 @@ class Ports:
             if kind or self.misses >= PERSISTENT:
                 self._flag_static(t, energy, kind or "jump")
         if self.seen_total is not None:
-            tared, nis = self.seen_total
+            read, tared, nis = self.seen_total
             self.seen_total = None
             if self.static.faulty:
                 return
             air = self._air
-            kind = self.total.take(energy, time, gained, self._lift, self.raw_total, tared, nis, air)
+            kind = self.total.take(energy, time, gained, self._lift, read, tared, nis, air)
             if kind:
                 self._blame(t, energy, (time, gained), kind)
 
@@ -223,7 +223,9 @@ class Ports:
 
     # -- the way back --------------------------------------------------------------------------------------------------
 
-    def hear_total(self, t: float, energy: EnergyFilter, end: float, tared: float, variance: float) -> None:
+    def hear_total(
+        self, t: float, energy: EnergyFilter, end: float, reading: float, tared: float, variance: float
+    ) -> None:
         """Compare a flagged total port with the filter that coasts; take it back when they have agreed for long enough.
 
         Parameters
@@ -234,15 +236,15 @@ class Ports:
             The filter that coasts.
         end : float
             End of the conversion, s.
-        tared, variance : float
-            The pressure, tared, Pa, and the variance of its noise, Pa².
+        reading, tared, variance : float
+            The channel as it came, and the pressure tared, Pa; the variance of its noise, Pa².
         """
         speed = self._air.speed(tared, energy.p)
         slope = self._air.density * (speed if speed > SLOWEST else SLOWEST)
         difference = speed - energy.v
         self.between = difference * difference if self.total.undecided else 0.0
         spread = energy.vv + (2.0 * variance + energy.pp) / (slope * slope)
-        if self.total.coast(self.raw_total, tared, difference, spread, end):
+        if self.total.coast(reading, tared, difference, spread, end):
             energy.widen_speed(difference * difference)
             self.between = 0.0
             self.tell(t, "airspeed_recovered", "total")

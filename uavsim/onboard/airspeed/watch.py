@@ -370,6 +370,8 @@ class StaticWatch:
         As of `TotalWatch`.
     offset_sd : float
         Offset of f_z, m/s².
+    gusts : bool
+        As of `ClimbTest`.
 
     Attributes
     ----------
@@ -377,14 +379,21 @@ class StaticWatch:
         Whether the port is flagged, and whether that is because it has been shut.
     """
 
-    __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut")
+    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut")
 
     def __init__(
-        self, variance: float, walk: float, row: float = LEAST, alike: float = 0.0, offset_sd: float = 0.0
+        self,
+        variance: float,
+        walk: float,
+        row: float = LEAST,
+        alike: float = 0.0,
+        offset_sd: float = 0.0,
+        gusts: bool = True,
     ) -> None:
-        self._variance, self._offset_sd = variance * apart(alike), offset_sd
+        self._variance, self._offset_sd, self._gusts = variance * apart(alike), offset_sd, gusts
         self._back = Readmission(variance, walk, row)
-        self._test, self._t, self.faulty, self.shut = ClimbTest(variance, 0.0, offset_sd), -inf, False, False
+        self._test, self._t = ClimbTest(variance, 0.0, offset_sd, gusts), -inf
+        self.faulty = self.shut = False
 
     @property
     def suspect(self) -> bool:
@@ -423,7 +432,7 @@ class StaticWatch:
             return ""
         dt = t - self._t
         if dt > GAP:
-            self._test, dt = ClimbTest(self._variance, reading, self._offset_sd), 0.0
+            self._test, dt = ClimbTest(self._variance, reading, self._offset_sd, self._gusts), 0.0
         self._t = t
         evidence = self._test.add(reading, dt, lift, density * GRAVITY)
         return "frozen" if evidence > SHUT else ""
