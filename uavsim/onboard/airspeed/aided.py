@@ -691,7 +691,7 @@ class AidedFilter(Estimator):
         if self._first_climb.open and new_static > 0:
             self._climbed(p_static, heard[1])
         heard[0] = t if new_total > 0 else heard[0]
-        heard[1] = t if new_static > 0 else heard[1]
+        heard[1], ports.raw_static = (t, p_static) if new_static > 0 else (heard[1], ports.raw_static)
         late = t - self._pause
         if self._gained.newest < late or min(heard) < late or True in self._muted:
             self._listen(t, late, given, (end_total, end_static))
