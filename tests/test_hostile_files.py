@@ -318,7 +318,7 @@ def everywhere(found: Any, value: Any) -> Any:
 @pytest.mark.parametrize(
     ("name", "change", "says"),
     [
-        ("bmp390", {"range_pa": [0, 1], "reference_pressure_pa": 1}, "does not hold 101325 Pa"),
+        ("bmp390", {"range_pa": [0, 50_000], "reference_pressure_pa": 1}, "does not hold 101325 Pa"),
         ("bmp390", {"range_pa": [200_000, 10_000_000], "reference_pressure_pa": 200_000}, "does not hold 101325 Pa"),
         ("bmp390", {"range_pa": [101_324, 101_326], "reference_pressure_pa": 101_325}, "is wider than range_pa"),
         ("adxl345", {"offset_limit_mg": [17_000] * 3}, "is beyond the range, 16000 mg"),
