@@ -343,10 +343,10 @@ class PortFault:
     kind: Literal["blocked", "leak", "ice", "water"]
     start: Time = 0.0
     stop: Time = FOREVER
-    duration: Annotated[float, Interval(gt=0.0, le=3600.0)] = 5.0
-    time_constant: Annotated[float, Interval(gt=0.0, le=3600.0)] = 1.0
+    duration: Annotated[float, Interval(ge=1e-6, le=3600.0)] = 5.0
+    time_constant: Annotated[float, Interval(ge=1e-6, le=3600.0)] = 1.0
     area: Annotated[float, Interval(ge=0.0, le=100.0)] = 1.0
-    water_length: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.005
+    water_length: Annotated[float, Interval(ge=1e-6, le=1.0)] = 0.005
     below_temperature: Annotated[float, Interval(ge=150.0, le=400.0)] | None = None
     between_heights: tuple[Height, Height] | None = None
 
