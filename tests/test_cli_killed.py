@@ -151,7 +151,7 @@ def described(folder: Path) -> dict[str, object]:
 @pytest.fixture(scope="module")
 def whole() -> pd.DataFrame:
     """Rows of flights that nobody disturbed; none cruises within 2.5 s, so all are kept."""
-    return fly_seeds(load_scenario("catapult", overrides=CHANGES), list(range(1, 7)), workers=1).runs
+    return fly_seeds(load_scenario("catapult", overrides=CHANGES), list(range(1, 15)), workers=1).runs
 
 
 def same_rows(rows: pd.DataFrame, whole: pd.DataFrame) -> None:
@@ -250,7 +250,7 @@ def test_flights_of_a_worker_that_is_killed_are_flown_again(tmp_path: Path, star
         os.kill(workers_of(flying.pid)[0], signal.SIGKILL)
     assert (flying.communicate(timeout=120)[1], flying.returncode) == ("", 1)
     assert [p.name for p in tmp_path.iterdir()] == ["here"]
-    pd.testing.assert_frame_equal(kept(tmp_path / "here"), whole, check_exact=True)
+    pd.testing.assert_frame_equal(kept(tmp_path / "here"), whole.iloc[:6], check_exact=True)
     assert described(tmp_path / "here")["complete"] is True
 
 
@@ -299,11 +299,12 @@ def test_several_that_are_interrupted_keep_what_was_finished(
 ) -> None:
     """Ctrl-C as a terminal sends it to all processes of the group, SIGTERM as `timeout` does it to the first one."""
     flying = start(tmp_path, "fly", *SHORT, "--seeds", "1-500", "--out", "here", code=COUNTING)
-    assert lines(flying, 2) == ["0.002\n", "0.004\n"]
+    one, more = (round(float(line) * 500) for line in lines(flying, 2))
+    assert (one, more > 1) == (1, True)
     send(flying.pid, number)
     out, err = flying.communicate(timeout=60)
     rows = kept(tmp_path / "here")
-    assert 2 <= len(rows) <= 6
+    assert more <= len(rows) <= 14  # and what both workers had under way, some flights each on a quick machine
     assert (flying.returncode, err) == (130, f"interrupted: {len(rows)} of 500 flights are kept\n")
     assert f"catapult, {len(rows)} flights: {len(rows)} timeout" in out
     same_rows(rows, whole)
