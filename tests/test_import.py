@@ -60,7 +60,7 @@ def test_onboard_loads_nothing_of_the_truth() -> None:
         "uavsim", "uavsim.airdata", "uavsim.onboard", "uavsim.onboard.launch", "uavsim.onboard.airspeed",
         "uavsim.onboard.flight_computer", "uavsim.onboard.interface", "uavsim.onboard.plausible",
         "uavsim.onboard.stamps", "uavsim.onboard.rail_offset", "uavsim.onboard.stroke", "uavsim.onboard.readiness",
-        "uavsim.onboard.repeats", "uavsim.failure", "uavsim.registry", "uavsim.compiled",
+        "uavsim.onboard.repeats", "uavsim.onboard.life", "uavsim.failure", "uavsim.registry", "uavsim.compiled",
     }  # fmt: skip
 
 

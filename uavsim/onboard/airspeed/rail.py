@@ -1,9 +1,7 @@
 """Whether the head's sensors are alive while the aircraft waits on its rail, by their descriptions.
 
-    silent   no new conversion for `SILENT`
-    invalid  nothing but NaN for so long
-    range    nothing but readings at or beyond the ends of the range
-    stuck    the same number for longer than its noise allows (`uavsim.onboard.repeats`)
+Each is `silent`, `invalid`, out of `range` or `stuck` as `uavsim.onboard.life` has it, and
+
     offset   in the tare the pair differs by more than `FAR` standard deviations of what the parts allow, and than a
              storm makes where it is open
 
@@ -11,10 +9,11 @@ What a sensor has read itself is never taken for normal. That a port is shut or 
 live one does not move either. That is for the stroke (`stroke`).
 """
 
-from math import hypot, inf, isfinite, nan, sqrt
+from math import hypot, inf, sqrt
 
 from uavsim.onboard.airspeed.difference import ZERO, channel_range
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.life import WORDS, SensorLife
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row
 from uavsim.onboard.stamps import JUMP
@@ -27,13 +26,6 @@ SETTLED = 1.0  # s of readings before anything is said. By hand
 FAR = 4.0  # standard deviations: one healthy pair in 16 000
 STORM = 800.0  # Pa: ½ρw² of 36 m/s, which an open head may see at rest
 LEAST_OFFSET = 30.0  # Pa, below which no difference is told: 7 m/s at rest, which the tare takes off. By hand
-
-WORDS = {
-    "silent": "no reading comes",
-    "invalid": "its readings are no numbers",
-    "range": "its readings are at or beyond the ends of its range",
-    "stuck": "it repeats one number for longer than its noise allows",
-}
 
 
 def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
@@ -58,56 +50,6 @@ def pause(noise: NoiseModel) -> float:
     return max(SILENT, PERIODS / noise.head_rate)
 
 
-class SensorCheck:
-    """One sensor: when it was heard last, and what of.
-
-    Parameters
-    ----------
-    bounds : (low, high)
-        Between which a reading is a measurement; the ends are not.
-    pause : float
-        How long it may be silent, s.
-    row : float
-        How often it may repeat a number; infinity: repetition says nothing.
-    """
-
-    __slots__ = ("_came", "_first", "_good", "_high", "_last", "_low", "_nan", "_pause", "_row", "_same")
-
-    def __init__(self, bounds: tuple[float, float], pause: float, row: float = inf) -> None:
-        (self._low, self._high), self._pause, self._row = bounds, pause, row
-        self.forget()
-
-    def forget(self) -> None:
-        """Begin anew."""
-        self._first, self._came, self._good = inf, -inf, -inf
-        self._last, self._same, self._nan = nan, 0, False
-
-    def add(self, t: float, reading: float, new: bool) -> None:
-        """Take a row of the head: its time, s, the value, and whether that is of a new conversion."""
-        if self._first == inf:
-            self._first = t
-        if not new:
-            return
-        self._came = t
-        if self._low < reading < self._high:
-            self._good = t
-            self._same = self._same + 1 if reading == self._last else 0
-            self._last = reading
-        else:
-            self._nan = not isfinite(reading)
-
-    def wrong(self, t: float) -> str:
-        """Return what is wrong with it at `t`, s; "" for nothing, or for too little time to tell."""
-        since = t - self._pause
-        if self._first > since:
-            return ""
-        if self._came < since:
-            return "silent"
-        if self._good < since:
-            return "invalid" if self._nan else "range"
-        return "stuck" if self._same >= self._row else ""
-
-
 class RailCheck:
     """The head's three sensors and the pair's difference.
 
@@ -127,9 +69,9 @@ class RailCheck:
         (total_row, _), (static_row, _) = rows_allowed(noise)
         silent = pause(noise)
         self.sensors = {
-            "total": SensorCheck(total, silent, total_row),
-            "static": SensorCheck(static, silent, static_row),
-            "thermometer": SensorCheck(warmth, silent),
+            "total": SensorLife(total, silent, total_row),
+            "static": SensorLife(static, silent, static_row),
+            "thermometer": SensorLife(warmth, silent),
         }
         self.forget()
 
