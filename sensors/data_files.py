@@ -31,7 +31,7 @@ WORD = 200
 TEXT = 20_000
 
 # The tokens of TOML in the order in which they must be tried. A quote that nothing closes is the last alternative: no
-# parser gets beyond it. Loops are unrolled, no two of their parts begin alike, and single characters repeat possessively:
+# parser gets beyond it. Loops are unrolled, no two of their parts begin alike, single characters repeat possessively:
 # this keeps it linear. A group is not repeated possessively, for Python before 3.11.5 matches that wrongly (gh-106052).
 _TOKEN = re.compile(
     r"""
