@@ -216,8 +216,7 @@ def test_a_shut_static_port_is_left_along_the_climb_that_it_was_shut_in(climb: f
     """p = p_held − ρ g c₀ T and V by what p was wrong, and the climb goes on: c₀ = V s/g = ± 7.7 m/s, 92 Pa/s.
 
     Of every row for a second after the flag, none of which is valid. When it is flagged, after 0.1 s, the pressure has
-    come to be wrong by 5 Pa and the airspeed by 0.15 m/s; the climb that is carried on is worth 92 Pa in that second,
-    and b, which is that of the total port's test at the flag, is off by 0.06 m/s².
+    come to be wrong by 5 Pa and the airspeed by 0.15 m/s; the climb that is carried on is worth 92 Pa in that second.
     """
     true, news = course(surge=0.0, climb=climb), []
     settings = replace(SETTINGS, aided=replace(SETTINGS.aided, slope_rate=3.0))
@@ -227,8 +226,8 @@ def test_a_shut_static_port_is_left_along_the_climb_that_it_was_shut_in(climb: f
     assert SHUT < flagged < SHUT + 1.0
     assert not rows[rows[:, 0] > flagged + 1e-9, 6].any()
     off = errors(rows, true, flagged + 1e-9, flagged + 1.0)
-    assert np.abs(off[:, 0]).max() < 0.15
-    assert np.abs(off[:, 1]).max() < 0.05 * 92.0
+    assert np.abs(off[:, 0]).max() < 0.13
+    assert np.abs(off[:, 1]).max() < 4.0
 
 
 @pytest.mark.parametrize("climb", [3.0, -3.0])

@@ -215,7 +215,7 @@ class Ports:
         self.tell(t, "airspeed_fault", "total", kind)
 
     def _flag_static(self, t: float, energy: EnergyFilter, kind: str) -> None:
-        self.static.flag(kind, energy, t, self._air.density, self.total.port.frozen.lost)
+        self.static.flag(kind, energy, t, self._air.density, self.total.lost)
         energy.read_relative(self._noise.differential and not self.static.shut)
         self.misses = 0
         self.total.port.restart()

@@ -226,6 +226,11 @@ class TotalWatch:
             return "leak"
         return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
 
+    @property
+    def lost(self) -> float:
+        """What f_x is off by on average over the last `SLOW`, m/s²: a port that has just failed is hardly in it."""
+        return self._lost
+
     def _wanders(self, v: float, gained: float, lost: float, lift: float, dt: float) -> bool:
         """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away.
 
