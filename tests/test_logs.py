@@ -272,8 +272,8 @@ def test_a_log_may_hold_more_than_force(read) -> None:
     recording = read(table, mapping="temperature=degrees+273.15,p_static=hPa*100,fx=fx+0.3")
     assert recording.readings[:, 1] == pytest.approx(table["fx"] + 0.3)
     assert set(recording.series) == {"temperature", "p_static"}
-    assert recording.series["temperature"].values == pytest.approx(288.15)
-    assert recording.series["p_static"].values == pytest.approx(101325.0)
+    assert recording.series["temperature"].values == pytest.approx(288.15)  # noqa: PD011
+    assert recording.series["p_static"].values == pytest.approx(101325.0)  # noqa: PD011
     assert recording.series["p_static"].t == pytest.approx(table["t"])
 
 

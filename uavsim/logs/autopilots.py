@@ -214,6 +214,7 @@ ARDUPILOT = Autopilot(
             "north_speed": _plain("north"),
             "east_speed": _plain("east"),
             "down_speed": _plain("VZ"),
+            "ground_speed": _plain("Spd"),
             "satellites": _plain("NSats"),
         },
         "VIBE": {
@@ -254,7 +255,10 @@ MAVLINK = Autopilot(
         "ATTITUDE": {"roll": _plain("roll"), "pitch": _plain("pitch"), "heading": _plain("yaw")},
         "GLOBAL_POSITION_INT": _SPEEDS,
         "GPS_RAW_INT": {"satellites": _plain("satellites_visible")},
-        "VFR_HUD": {"equivalent_airspeed": _plain("airspeed", said="the autopilot's own")},
+        "VFR_HUD": {
+            "equivalent_airspeed": _plain("airspeed", said="the autopilot's own"),
+            "ground_speed": _plain("groundspeed"),
+        },
     },
     signs={"RAW_IMU": 1e-3 * STANDARD_GRAVITY, "SCALED_IMU": 1e-3 * STANDARD_GRAVITY},
 )

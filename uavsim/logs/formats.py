@@ -155,7 +155,7 @@ def _autopilot(path: Path, kind: Autopilot, read: Callable[[set[str]], Logged], 
         fields = kind.completed(key[0], log.tables[key])
         table, at_end = _message(path, kind, key, fields, taken)
         end = max(end, at_end)
-        if key in asked or table.usual.keys() - {"t"}:
+        if key in asked or key[0] in kind.force or table.usual.keys() - {"t"}:
             tables.append(table)
             taken |= table.usual.keys() - {"t"}
     tables += _others(path, kind, log, chosen)

@@ -77,8 +77,9 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
         pieces = [piece for piece in pieces if not piece.other]
         series = _series(pieces)
         pieces = [piece for piece in pieces if piece.force]
-        if not pieces:
-            raise ValueError(_lacks(AXES, [name for table in tables for name in table.columns], tables=tables))
+        if not pieces or not any("fx" in piece.force or set(piece.force) & set(sources) for piece in pieces):
+            missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
+            raise ValueError(_lacks(missing, [name for table in tables for name in table.columns], tables=tables))
         factors = {axis: factor for piece in pieces for axis, factor in piece.factors.items()}
         _check_factors(factors)
         readings, cuts, unwrapped = _merged(pieces)
@@ -101,7 +102,8 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
     held = {name: source for name, source in wanted.items() if source.column in found}
     axes = [axis for axis in AXES if axis in held]
     lacking = [name for name in COLUMNS if name in sources and name not in held]
-    if ("t" not in held and (held or alone)) or (alone and (lacking or not axes)):
+    headless = "fx" not in axes and not set(axes) & set(sources)
+    if ("t" not in held and (held or alone)) or (alone and (lacking or headless)):
         missing = lacking or [name for name in COLUMNS if name not in held]
         if not alone and "t" in missing:
             missing = ["t"]  # what it lacks besides may be in another file

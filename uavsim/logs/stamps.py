@@ -212,12 +212,18 @@ def _spread(of: Stamped, values: Array) -> None:
     begin = of.t[starts]
     reach = np.diff(begin, append=np.nan)
     usual = float(np.median(reach[reach > 0.0])) if (reach > 0.0).any() else 0.0
-    if usual == 0.0:
-        return
     each = usual / float(np.median(counts))
     reach = np.where((reach > 0.0) & (reach <= 1.5 * usual), reach, np.minimum(each * counts, usual))
     place = np.arange(of.t.size) - np.repeat(starts, counts)
+    before = of.t
     of.t = np.repeat(begin, counts) + place * np.repeat(reach / counts, counts)
+    rises = np.diff(of.t) > 0.0
+    rises[np.array(of.cuts, int) - 1] = True
+    if not rises.all():  # finer than a double is at that time, or all stamps are the same
+        of.t = before
+        _keep(of, np.concatenate(([True], ~same)))
+        of.remarks.append(f"{np.count_nonzero(same)} rows have the time of the row before")
+        return
     of.remarks.append(
         f"stamps are coarse: {np.median(counts):.3g} rows have the same; they are spread over the {usual:.4g} s up to "
         "the next stamp"
@@ -247,13 +253,12 @@ def _look_at_rates(of: Stamped) -> None:
     rates = [(start, _usual(of.t[start : start + size + 1])) for start in edges]
     changes: list[tuple[int, float, float]] = []
     now = rates[0][1]
-    for (start, here), (_, after) in zip(rates[1:], [*rates[2:], rates[-1]], strict=True):
-        if min(now, here, after) <= 0.0:
-            continue
-        if min(here, after) > CHANGED * now or max(here, after) * CHANGED < now:
-            at = _changing(of.t, max(0, start - size), min(of.t.size, start + size), now, here)
-            changes.append((at, now, here))
-            now = here
+    for (start, here), (_, after) in zip(rates[1:], [*rates[2:], rates[-1]], strict=True):  # two stretches say so
+        slower = min(here, after) > CHANGED * now
+        if min(now, here, after) > 0.0 and (slower or max(here, after) * CHANGED < now):
+            at = _changing(of.t, max(0, start - size), min(of.t.size, start + size), now, after)
+            changes.append((at, now, after))
+            now = after
     if not changes or len(changes) > MOST_CUTS:
         return
     for at, before, after in changes[:3]:
