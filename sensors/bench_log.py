@@ -6,7 +6,7 @@ that is little, and everything that was done is counted and told.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,8 +24,11 @@ MOST_FILLED = 0.05  # share of readings that may be filled in; beyond, the longe
 MOST_MISSING = 1e11  # readings in a gap, as they are counted: ten million such gaps are a whole number of 64 bits
 FEWEST = 1000  # readings
 SLOWEST, FASTEST = 0.01, 20_000.0  # Hz: what an accelerometer or a barometer gives, with a margin
-NUMBER = re.compile(r"(.+?)\*\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)", re.DOTALL)
+_DIGITS = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
+FACTOR = re.compile(rf"(.+?)\*\s*([-+]?{_DIGITS})", re.DOTALL)
+OFFSET = re.compile(rf"(.+?)([-+])\s*({_DIGITS})", re.DOTALL)
 LEAST_FACTOR, MOST_FACTOR = 1e-15, 1e15  # of a map: from femtoseconds to seconds, and back
+MOST_OFFSET = 1e15  # of a map: milliseconds since 1970 are 2e12
 MOST_READ = 1e12  # SI, of a reading: what is beyond is none, and its square still is a number
 LATEST = 1e20  # s, of a time: what is beyond is none; nanoseconds since 1970 that count as seconds are below
 LONGEST_MAP = 10_000  # characters
@@ -33,10 +36,11 @@ LONGEST_MAP = 10_000  # characters
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a column comes from: a column of the file times a factor; see `resolved` for how it is told apart."""
+    """Where a column comes from: a column of the file times a factor, plus an offset; see `resolved`."""
 
     column: str
     factor: float = 1.0
+    offset: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +100,7 @@ class BenchLog:
 
 
 def parse_map(text: str, known: Sequence[str]) -> dict[str, Source]:
-    """Return the columns of `ours=theirs,…`; theirs may end in a factor, as in `fx=ax*9.80665`.
+    """Return the columns of `ours=theirs,…`; theirs may end in a factor and an offset, as in `fx=ax*9.80665+0.3`.
 
     Raises
     ------
@@ -169,24 +173,40 @@ def _sources(
 
 
 def resolved(source: Source, found: Sequence[str]) -> Source:
-    """Split a sign and a factor off a name that is not itself a column: `-Ay`, `ax*9.80665`, `-ax*9.80665`.
+    """Split sign, factor and offset off a name that is not itself a column: `-Ay`, `ax*9.80665`, `-ax*9.80665+0.3`.
 
     Raises
     ------
     ValueError
-        If the factor is 0, or none that a unit can have.
+        If the factor is 0, or none that a unit can have, or the offset is beyond what can be.
     """
     whole = source.column
     signed = [(whole, 1.0)] + (
         [(whole[1:].strip(), -1.0 if whole[0] == "-" else 1.0)] if whole[:1] in ("-", "+") else []
     )
-    for name, sign in signed:
-        if name in found:
-            return Source(name, sign * source.factor)
-        match = NUMBER.fullmatch(name)
-        if match is not None and match[1].strip() in found:
-            return Source(match[1].strip(), sign * source.factor * _factor(match[2]))
+    for given, sign in signed:
+        for name, factor, offset in _split(given):
+            if name in found:
+                _check_offset(offset)
+                return Source(name, sign * source.factor * _factor(factor), source.offset + float(offset))
     return source
+
+
+def _split(text: str) -> Iterator[tuple[str, str, str]]:
+    """Yield the ways to take a text as name, factor and offset; those that leave more to the name come first."""
+    yield text, "1", "0"
+    if times := FACTOR.fullmatch(text):
+        yield times[1].strip(), times[2], "0"
+    if plus := OFFSET.fullmatch(text):
+        scaled, offset = plus[1].strip(), plus[2] + plus[3]
+        yield scaled, "1", offset
+        if times := FACTOR.fullmatch(scaled):
+            yield times[1].strip(), times[2], offset
+
+
+def _check_offset(text: str) -> None:
+    if not abs(float(text)) <= MOST_OFFSET:
+        raise ValueError(f"the map has an offset of {brief(text)}: give one up to ±{MOST_OFFSET:g}")
 
 
 def _factor(text: str) -> float:
@@ -225,7 +245,7 @@ def numbers(values: Array, source: Source, name: str) -> tuple[Array, int]:
     most = LATEST if name == "t" else MOST_READ
     finite = np.isfinite(values)
     with np.errstate(over="ignore", invalid="ignore"):
-        brought = values * source.factor
+        brought = values * source.factor + source.offset
         good = finite & (np.abs(brought) <= most)
     if not good.any():
         what = f"no number up to ±{most:g} in our unit" if finite.any() else "no numbers"

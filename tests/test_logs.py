@@ -264,6 +264,18 @@ def test_sign_and_factor_are_told_from_any_name(name: str, sign: str, factor: fl
     assert resolved(Source(name), [name]) == Source(name)
     assert resolved(Source(sign + name), [name]) == Source(name, value)
     assert resolved(Source(f"{sign}{name} * {factor!r}"), [name]) == Source(name, value * factor)
+    assert resolved(Source(f"{sign}{name}*{factor!r} - 2.5"), [name]) == Source(name, value * factor, -2.5)
+    assert resolved(Source(f"{sign}{name}+0.3"), [name]) == Source(name, value, 0.3)
+
+
+def test_a_log_may_hold_more_than_force(read) -> None:
+    table = frame(rate=50.0).assign(degrees=15.0, hPa=1013.25)
+    recording = read(table, mapping="temperature=degrees+273.15,p_static=hPa*100,fx=fx+0.3")
+    assert recording.readings[:, 1] == pytest.approx(table["fx"] + 0.3)
+    assert set(recording.series) == {"temperature", "p_static"}
+    assert recording.series["temperature"].values == pytest.approx(288.15)
+    assert recording.series["p_static"].values == pytest.approx(101325.0)
+    assert recording.series["p_static"].t == pytest.approx(table["t"])
 
 
 @settings(deadline=None, derandomize=True, max_examples=200)

@@ -14,7 +14,8 @@ def replay(
     logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="A flight's folder, or a log of any files.")],
     *,
     mapping: Annotated[
-        str | None, typer.Option("--map", metavar="OURS=THEIRS,...", help="A log's columns, as t=time,fx=-Ay*9.80665.")
+        list[str] | None,
+        typer.Option("--map", metavar="OURS=THEIRS,...", help="A log's columns, as t=time,fx=-Ay*9.80665; may repeat."),
     ] = None,
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of the detector.")
@@ -41,7 +42,15 @@ def replay(
             raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
         _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
     else:
-        _replay_log(logs, mapping, settings or [], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
+        _replay_log(
+            logs,
+            ",".join(mapping) if mapping else None,
+            settings or [],
+            out,
+            plots=not no_plots,
+            overwrite=overwrite,
+            as_json=as_json,
+        )
 
 
 def _is_flight(path: Path) -> bool:

@@ -10,7 +10,7 @@ is not known of a recording: the score holds the detections, and null for whatev
 """
 
 from uavsim.logs.mapping import read_log
-from uavsim.logs.recording import Clipping, Gap, Recording
+from uavsim.logs.recording import SERIES, Clipping, Gap, Recording, Series
 from uavsim.logs.replay import PAUSE, replay_log
 
-__all__ = ["PAUSE", "Clipping", "Gap", "Recording", "read_log", "replay_log"]
+__all__ = ["PAUSE", "SERIES", "Clipping", "Gap", "Recording", "Series", "read_log", "replay_log"]

@@ -1,7 +1,7 @@
 """A log's tables turned into one recording: which column is which, in what unit, and files joined on time."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,7 +10,7 @@ import numpy as np
 from sensors.bench_log import LATEST, MOST_READ, Source, listed, numbers, parse_map, resolved
 from sensors.tables import MOST_ROWS, brief
 from uavsim.logs.formats import Mapped, Table, named, read_tables
-from uavsim.logs.recording import AXES, COLUMNS, GAP, Array, Recording
+from uavsim.logs.recording import AXES, COLUMNS, GAP, SERIES, Array, Recording, Series
 
 SLOWEST, FASTEST = 10.0, 20_000.0  # Hz, median rates that are understood
 FEWEST = 10  # readings
@@ -21,12 +21,13 @@ UNEQUAL = 1.2  # ratio of the axes' factors above which their units are mixed
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
-    """Columns of ours from one table: t, and what it has of fx, fy, fz, each with the factor that the map gives."""
+    """Columns of ours from one table: t, what it has of fx, fy, fz, with the map's factors, and what else."""
 
     name: str
     t: Array
     force: dict[str, Array]
     factors: dict[str, float | None]
+    series: dict[str, Series] = field(default_factory=dict)
 
 
 def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
@@ -49,7 +50,7 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
     ValueError
         One line that names the file, what was found and what to map.
     """
-    sources = {} if mapping is None else parse_map(mapping, COLUMNS)
+    sources = {} if mapping is None else parse_map(mapping, (*COLUMNS, *SERIES))
     tables = [table for path in paths for table in read_tables(path, sources)]
     remarks = [f"{table.name}: {said}" for table in tables for said in table.remarks]
     pieces = []
@@ -62,6 +63,8 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
             pieces.append(piece)
     names = tuple(path.name for path in paths)
     with named(", ".join(map(str, paths))):
+        series = _series(pieces)
+        pieces = [piece for piece in pieces if piece.force]
         missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
         if missing:
             raise ValueError(_lacks(missing, [name for table in tables for name in table.columns]))
@@ -70,7 +73,7 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
         readings = _merged(pieces)
         if len(readings) > MOST_ROWS:
             raise ValueError(f"{len(readings)} rows; at most {MOST_ROWS} are replayed")
-        recording = Recording(names, mapping or "", readings, (*remarks, *_remarks(readings)))
+        recording = Recording(names, mapping or "", readings, (*remarks, *_remarks(readings)), series)
         _check_rate(recording)
         _check_numbers(readings[:, 1:])
         if not any(factors.values()):  # else somebody has thought of units
@@ -86,12 +89,14 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
     missing = [name for name in COLUMNS if name not in held]
     if "t" in missing and held and not alone:
         missing = ["t"]  # what it lacks besides may be in another file
+    others = {name: resolved(sources.get(name, table.usual.get(name, Source(name))), found) for name in SERIES}
+    others = {name: source for name, source in others.items() if source.column in found}
     if missing and (alone or missing == ["t"]):
         named = [sources[name].column for name in missing if name in sources]
         raise ValueError(_lacks(missing, found, named))
-    if "t" in missing or len(held) == 1:
+    if "t" in missing or len(held) + len(others) == 1:
         return None
-    values = _values(table, held, remarks)
+    values = _values(table, {**held, **others}, remarks)
     t = values.pop("t")
     timed = np.isfinite(t)
     back = np.flatnonzero(np.diff(t[timed]) < 0.0)
@@ -101,18 +106,23 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
             f"time runs backwards: {after:.10g} s comes after {before:.10g} s (row {back[0] + 2}); map t=… to a column "
             f"that rises, of {listed(found)}"
         )
-    stated = {axis: "*" in sources[axis].column[len(held[axis].column) :] for axis in values if axis in sources}
-    factors = {axis: held[axis].factor if stated.get(axis) else None for axis in values}
+    axes = [axis for axis in AXES if axis in values]
+    stated = {axis: "*" in sources[axis].column[len(held[axis].column) :] for axis in axes if axis in sources}
+    factors = {axis: held[axis].factor if stated.get(axis) else None for axis in axes}
     keep = np.flatnonzero(timed)
     keep = keep[np.concatenate(([True], np.diff(t[keep]) > 0.0))] if keep.size else keep
     if not timed.all():
         remarks.append(f"{table.name}: {np.count_nonzero(~timed)} rows have no time and are left out")
     if keep.size < np.count_nonzero(timed):
         remarks.append(f"{table.name}: {np.count_nonzero(timed) - keep.size} rows have the time of the row before")
-    force = {name: column[keep] for name, column in values.items()}
+    force = {name: values[name][keep] for name in axes}
     if len(force) == len(AXES) and not any(factors.values()):
         _check_unit(np.column_stack([force[axis] for axis in AXES]))
-    return Piece(table.name, t[keep], force, factors)
+    series = {
+        name: Series(name, t[keep], values[name][keep], f"{table.name}: {source.column}")
+        for name, source in others.items()
+    }
+    return Piece(table.name, t[keep], force, factors, series)
 
 
 def _values(table: Table, held: Mapped, remarks: list[str]) -> dict[str, Array]:
@@ -130,6 +140,23 @@ def _values(table: Table, held: Mapped, remarks: list[str]) -> dict[str, Array]:
 def _lacks(missing: Sequence[str], found: Sequence[str], named: Sequence[str] = ()) -> str:
     what = f"has no column {', '.join(repr(brief(name)) for name in named)}" if named else f"lacks {', '.join(missing)}"
     return f"{what}; it has {listed(found)}; say which is which with --map {','.join(f'{n}=…' for n in missing)}"
+
+
+def _series(pieces: Sequence[Piece]) -> dict[str, Series]:
+    """What the pieces hold besides force; of one that follow each other those of the same name are joined."""
+    found: dict[str, Series] = {}
+    for piece in sorted((piece for piece in pieces if piece.t.size), key=lambda piece: float(piece.t[0])):
+        for name, one in piece.series.items():
+            before = found.get(name)
+            if before is not None and one.t[0] <= before.t[-1]:
+                raise ValueError(f"{name} is found twice, in {before.source} and in {one.source}: say which with --map")
+            found[name] = one if before is None else _behind(before, one)
+    return found
+
+
+def _behind(before: Series, after: Series) -> Series:
+    t, values = np.concatenate((before.t, after.t)), np.concatenate((before.values, after.values))
+    return Series(before.name, t, values, f"{before.source}, {after.source}")
 
 
 # -- joining ---------------------------------------------------------------------------------------------------------

@@ -1,6 +1,8 @@
-"""Readings of specific force on a log's own time axis, with what is missing and what is clipped."""
+"""Readings of specific force on a log's own time axis, what is missing and clipped, and what else the log holds."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +13,27 @@ Array = NDArray[np.float64]
 
 COLUMNS = ("t", "fx", "fy", "fz")
 AXES = COLUMNS[1:]
+SERIES = {
+    "p_total": "Pa",
+    "p_static": "Pa",
+    "p_difference": "Pa",
+    "temperature": "K",
+    "airspeed_reference": "m/s",
+    "equivalent_airspeed": "m/s",
+    "baro_height": "m",
+    "roll": "rad",
+    "pitch": "rad",
+    "heading": "rad",
+    "north_speed": "m/s",
+    "east_speed": "m/s",
+    "down_speed": "m/s",
+    "clips_x": "",
+    "clips_y": "",
+    "clips_z": "",
+    "satellites": "",
+}
+"""What else a log may hold, with its unit: pressures, temperature of the air, airspeeds of others (true, equivalent),
+pressure height, attitude, velocity over ground, the log's own counts of clipped readings, satellites in use."""
 GAP = 3.0  # median intervals, beyond which readings are missing; as the detectors have it
 CLIPPED = 1.5 * STANDARD_GRAVITY  # m/s²; an extreme below is no end of a range
 HELD = 3  # readings in a row that hold the extreme value to call it clipped
@@ -46,8 +69,30 @@ class Clipping:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Series:
+    """One quantity of a log, with time stamps of its own.
+
+    Attributes
+    ----------
+    name : str
+        One of `SERIES`.
+    t : numpy.ndarray
+        s, on the log's clock, strictly rising.
+    values : numpy.ndarray
+        In the unit of `SERIES`; NaN where the log holds no number.
+    source : str
+        Which file and column it is.
+    """
+
+    name: str
+    t: Array
+    values: Array
+    source: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Recording:
-    """Readings of specific force from somebody's log.
+    """Readings of specific force from somebody's log, and what else it holds.
 
     Attributes
     ----------
@@ -56,15 +101,26 @@ class Recording:
     mapping : str
         The map that was given, empty without one.
     readings : numpy.ndarray
-        Shape (n, 4): t, s, strictly rising, and fx, fy, fz, m/s²; NaN where the log holds no number.
+        Shape (n, 4): t, s, strictly rising within a part, and fx, fy, fz, m/s²; NaN where the log holds no number.
     remarks : tuple of str
-        What was not as it should be, a sentence each.
+        What was not as it should be, and what was assumed, a sentence each.
+    series : mapping
+        What else the log holds, by the names of `SERIES`.
+    cuts : tuple of int
+        Rows at which a part begins whose clock began anew; none if the log is of one part.
     """
 
     files: tuple[str, ...]
     mapping: str
     readings: Array
     remarks: tuple[str, ...]
+    series: Mapping[str, Series] = field(default_factory=dict)
+    cuts: tuple[int, ...] = ()
+
+    @property
+    def parts(self) -> list[range]:
+        """Rows of each part: a detector of its own is for each of them."""
+        return [range(*ends) for ends in pairwise((0, *self.cuts, len(self.readings)))]
 
     @property
     def rate(self) -> float:

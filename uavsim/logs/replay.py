@@ -1,7 +1,7 @@
 """The launch detector run over a recording, from its first reading to its last."""
 
 from array import array
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
@@ -44,8 +44,7 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
         clipping, all detections. Its ``scenario`` says what was replayed, and does not fly.
     """
     rate = recording.rate
-    detector = launch.default(rate=rate) if settings is None else launch.build(settings, rate)
-    columns, detections, reason = _watch(detector, recording.readings)
+    columns, detections, reason = _watch(lambda: _detector(settings, rate), recording)
     t, fx, fy, fz = recording.readings.T
     tables = {
         "accelerometer": frame("accelerometer", {"t": t, "fx": fx, "fy": fy, "fz": fz}),
@@ -64,24 +63,32 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
     return Flight(about, tables, events, score)
 
 
-def _watch(detector: Any, readings: Array) -> tuple[dict[str, NDArray[Any]], list[float], str]:
-    """Return the detector's state at each reading, when it recognised a launch, and what ended it before the end."""
+def _detector(settings: launch.DetectorSettings | None, rate: float) -> Any:
+    return launch.default(rate=rate) if settings is None else launch.build(settings, rate)
+
+
+def _watch(build: Callable[[], Any], recording: Recording) -> tuple[dict[str, NDArray[Any]], list[float], str]:
+    """Return the detector's state at each reading, when it recognised a launch, and what ended it before the end.
+
+    Each part of the recording, whose clock began anew, has a detector of its own.
+    """
     state = {name: array("d") for name in STATE}
     recognised, detections, reason = array("b"), [], ""
-    resume = np.inf
     try:
-        for t, fx, fy, fz in _rows(readings):
-            if t >= resume:
-                detector.reset()
-                resume = np.inf
-            seen = detector.step(t, fx, fy, fz)
-            told = [getattr(detector, name, None) for name in STATE]
-            if seen:
-                detections.append(t)
-                resume = t + PAUSE
-            for name, value in zip(STATE, told, strict=True):
-                state[name].append(np.nan if value is None else value)
-            recognised.append(seen)
+        for part in recording.parts:
+            detector, resume = build(), np.inf
+            for t, fx, fy, fz in _rows(recording.readings[part.start : part.stop]):
+                if t >= resume:
+                    detector.reset()
+                    resume = np.inf
+                seen = detector.step(t, fx, fy, fz)
+                told = [getattr(detector, name, None) for name in STATE]
+                if seen:
+                    detections.append(t)
+                    resume = t + PAUSE
+                for name, value in zip(STATE, told, strict=True):
+                    state[name].append(np.nan if value is None else value)
+                recognised.append(seen)
     except PartError as failure:
         reason = str(failure)
     columns = {name: _column(np.array(state[name]), of_flags=name == "triggered") for name in STATE}
