@@ -78,7 +78,7 @@ class RestMean:
 def on_rail(
     v: float, dt: float, mean: float, known: float, summed: float, time: float
 ) -> tuple[float, float, float, float]:
-    """Return the state of `RestMean` after one more force: mean, time of its blocks, sum and time of the one that runs."""
+    """Return the state of `RestMean` after one more force: mean, time of its blocks, sum and time of the last one."""
     if -MOST_FORCE < v < MOST_FORCE:
         summed += v * dt
         time += dt
