@@ -50,7 +50,9 @@ def main() -> None:
             found = delays(rule, rate, options.trials, seed=options.seed, sigma_g=SIGMA)
             middle, late = 1e3 * np.nanquantile(found, (0.5, 0.95))
             told = [
-                ", ".join(f"{one[i].rate:.3g} (≤ {one[i].most:.2g})" if filtered else f"{one[i].rate:.3g}" for one in of)
+                ", ".join(
+                    f"{one[i].rate:.3g} (≤ {one[i].most:.2g})" if filtered else f"{one[i].rate:.3g}" for one in of
+                )
                 for filtered, of in counted.items()
             ]
             print(

@@ -132,7 +132,7 @@ def test_one_sample_alone_never_decides_unless_it_is_let(rate):
 
 @pytest.mark.parametrize("rate", [38.0, 50.0, 104.0, 833.0, 4000.0])
 def test_it_keeps_time_at_every_rate(rate):
-    """A step to 6 g after two seconds of rest: 9 g·ms, or what two samples add up to 10, or one, and one sample more."""
+    """A step to 6 g after two seconds of rest: 9 g·ms, or what two samples add up to 10, or one; and one more."""
     rest = round(2.0 * rate)
     detector = build(DetectorSettings(), rate)
     (found,) = recognised(detector, [0.3 * G] * rest + [6.0 * G] * rest, rate)

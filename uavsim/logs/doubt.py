@@ -72,7 +72,7 @@ def _unit(rest: Rest, recording: Recording) -> Iterator[str]:
     """Doubt the unit by what rest reads."""
     if not rest.sizes.size or rest.share(G0, ONE_G) >= SOME:
         return
-    reads, axes = rest.middle, np.isfinite(rest.vectors).any(axis=0)
+    reads, axes = rest.middle, rest.axes
     agree = rest.share(reads, ONE_G) >= MOST
     if is_in_feet(rest):
         taken = "doubtful" if scaled(recording.mapping) else f"taken as ft/s² and scaled by {FOOT}"
@@ -80,10 +80,10 @@ def _unit(rest: Rest, recording: Recording) -> Iterator[str]:
             f"at rest |f| reads {reads:.1f}, which is 1 g in ft/s² and not in m/s²: {taken}; map fx=…*{FOOT} and so on "
             "to say so, fx=…*1 if it is m/s² all the same"
         )
-    elif not axes.all():
+    elif len(axes) < len(AXES):
         if reads > 1.5 * G0 and agree:
             yield (
-                f"at rest {_named(axes)} reads {reads:.4g} m/s², more than 1 g: another unit, or counts? "
+                f"at rest {' and '.join(axes)} reads {reads:.4g} m/s², more than 1 g: another unit, or counts? "
                 "map it with a factor"
             )
     elif np.mean(rest.sizes <= NOTHING) >= MOST:
@@ -104,10 +104,6 @@ def _unit(rest: Rest, recording: Recording) -> Iterator[str]:
         )
 
 
-def _named(present: "np.ndarray[tuple[int, ...], np.dtype[np.bool_]]") -> str:
-    return " and ".join(axis for axis, there in zip(AXES, present, strict=True) if there)
-
-
 # -- axes ------------------------------------------------------------------------------------------------------------
 
 
@@ -123,10 +119,10 @@ def _axes(rest: Rest) -> Iterator[str]:
             "y points to the left"
         )
     elif abs(y) >= ALONG:
-        sign, minus = ("+", "-") if y > 0.0 else ("−", "")
+        sign, minus, own = ("+", "-", "+y") if y > 0.0 else ("−", "", "-y")
         yield (
-            f"at rest f_y reads {y:+.2f} g: {sign}y points up, and ours is z down; map fz={minus}… to what is y here, or "
-            f"detector.axes=[\"{sign.replace('−', '-')}y\"] if it is launched upwards along it"
+            f"at rest f_y reads {y:+.2f} g: {sign}y points up, and with us -z does; map fz={minus}… of what is y here, "
+            f"or --set 'detector.axes=[\"{own}\"]' if it is launched upwards along it"
         )
     elif x <= -ALONG:
         yield f"at rest f_x reads {x:+.2f} g: −x points up, which is a nose that points down; map fx=-… if it is up"
@@ -167,7 +163,7 @@ def _counted(recording: Recording) -> Iterator[str]:
     """Tell what the log's counters say of clipping."""
     for axis, (total, start, end) in counted(recording).items():
         if total:
-            yield f"clipping: the log's own counter has {total} clipped readings of {axis} from {start:.3f} to {end:.3f} s"
+            yield f"clipping: the log's own counter has {total} readings of {axis} from {start:.3f} to {end:.3f} s"
 
 
 def ends(recording: Recording) -> list[Clipping]:

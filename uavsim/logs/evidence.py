@@ -7,7 +7,8 @@ logger that is faster than its sensor, or by a sensor that has died.
 All of it is collected in one pass over chunks of rows, in memory that grows by some numbers a block.
 """
 
-from dataclasses import dataclass, field
+from collections import Counter
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from uavsim.truth import STANDARD_GRAVITY
 
 BLOCK = 0.25  # s: short beside the rest before a launch, and 12 readings at 50 Hz
 FEWEST = 10  # readings in a block
+FEWEST_BLOCKS = 4  # quiet ones: less may be a stroke
 QUIET = 2.0  # times the deviation that a tenth of the blocks do not exceed, up to which a block is quiet
 KNOWN = 0.1 * STANDARD_GRAVITY  # m/s², up to which the mean of a block may be unsure
 LIVES = 2e-4  # g: a block that moves less than this repeats itself, in whatever unit
@@ -35,11 +37,14 @@ class Still:
     start, end : float
         Times of the first and the last of them, s.
     rows : int
+    reads : tuple of float
+        What they say, m/s².
     """
 
     start: float
     end: float
     rows: int
+    reads: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +65,11 @@ class Rest:
     def share(self, size: float, within: float) -> float:
         """Which part of them reads a size, up to a fraction of it."""
         return float(np.mean(np.abs(self.sizes - size) <= within * size)) if self.sizes.size else 0.0
+
+    @property
+    def axes(self) -> list[str]:
+        """Those that there are."""
+        return [axis for i, axis in enumerate(AXES) if np.isfinite(self.vectors[:, i]).any()]
 
     @property
     def middle(self) -> float:
@@ -110,15 +120,14 @@ class Evidence:
         self.rows += len(readings)
         self.changes += int(np.count_nonzero(~same))
         t = readings[:, 0]
-        starts = np.flatnonzero(~same)
-        edges = [0, *starts.tolist(), len(readings)] if not starts.size or starts[0] else [*starts.tolist(), len(readings)]
+        edges = [0, *(np.flatnonzero(~same[1:]) + 1).tolist(), len(readings)]
         lengths = np.diff(edges)
         least = max(3, STILL_ROWS - 1)
         for i in {*np.flatnonzero(lengths >= least).tolist(), 0, len(lengths) - 1}:
             a, b = edges[i], edges[i + 1]
-            spell = Still(float(t[a]), float(t[b - 1]), int(lengths[i]))
+            spell = Still(float(t[a]), float(t[b - 1]), int(lengths[i]), tuple(force[a].tolist()))
             if i == 0 and same[0] and self._since is not None:
-                spell = Still(self._since.start, spell.end, self._since.rows + spell.rows)
+                spell = replace(self._since, end=spell.end, rows=self._since.rows + spell.rows)
                 if self.longest and self.longest[-1] == self._since:
                     self.longest.pop()
             if spell.rows >= STILL_ROWS and spell.end - spell.start >= STILL and len(self.longest) < MOST_STILL:
@@ -134,10 +143,14 @@ class Evidence:
 
     @property
     def repeats(self) -> list[Still]:
-        """Spells in which readings repeat for far longer than is usual in this log, in the order of time."""
+        """Spells in which readings repeat for far longer than is usual in this log, in the order of time.
+
+        Where several say the same it is the step of a coarse sensor that rests.
+        """
         usual = max(1.0, (self.rows - sum(s.rows for s in self.longest)) / max(self.changes - len(self.longest), 1))
         found = [spell for spell in self.longest if spell.rows >= STILL_TIMES * usual]
-        return sorted(found, key=lambda spell: spell.start)
+        often = Counter(repr(spell.reads) for spell in self.longest)
+        return sorted((spell for spell in found if often[repr(spell.reads)] == 1), key=lambda spell: spell.start)
 
     def rest(self) -> Rest:
         """Return what quiet blocks read whose mean is known well enough; along axes that the log has."""
@@ -154,6 +167,8 @@ class Evidence:
         quiet = chosen & (moving <= QUIET * float(np.quantile(moving[chosen], 0.1)))
         unsure = moving / np.sqrt(np.maximum(n, 1.0))
         quiet &= unsure <= np.maximum(KNOWN, 0.1 * sizes)
+        if np.count_nonzero(quiet) < FEWEST_BLOCKS:
+            return Rest(np.empty((0, 3)), np.empty(0))
         return Rest(vectors[quiet], sizes[quiet])
 
 

@@ -140,7 +140,11 @@ class Recording:
         return [Gap(float(t[i]), float(t[i + 1])) for i in rows]
 
     def clipping(self) -> list[Clipping]:
-        """Return the axes whose greatest or least value is held for `HELD` readings in a row."""
+        """Return the axes whose greatest or least value is held for `HELD` readings in a row that differ otherwise.
+
+        Rows that say in all axes what the row before said are one reading: a logger that is faster than its sensor
+        writes each more than once. Where there is but one axis a reading counts for as many rows as is usual.
+        """
         found = (self._held(axis, sign) for axis in AXES for sign in (1.0, -1.0))
         return [clipped for clipped in found if clipped is not None]
 
@@ -150,7 +154,19 @@ class Recording:
             return None
         edges = np.diff(np.concatenate(([0], (f == level).astype(int), [0])))
         starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-        if (ends - starts).max() < HELD:
+        lengths = self._readings_in(starts, ends)
+        if lengths.max() < HELD:
             return None
-        first = starts[np.argmax(ends - starts >= HELD)]
+        first = starts[np.argmax(lengths >= HELD)]
         return Clipping(axis, sign * level, int((ends - starts).sum()), float(self.readings[first, 0]))
+
+    def _readings_in(self, starts: NDArray[np.int64], ends: NDArray[np.int64]) -> Array:
+        """How many readings there are in runs of rows, those that say the same counted once."""
+        force = self.readings[:, 1:]
+        axes = np.isfinite(force).any(axis=0)
+        new = np.concatenate(([True], (force[1:, axes] != force[:-1, axes]).any(axis=1)))
+        if np.count_nonzero(axes) < 2:
+            usual: float = np.count_nonzero(new) / new.size
+            return np.asarray((ends - starts) * usual, np.float64)
+        before = np.concatenate(([0], np.cumsum(new)))
+        return np.asarray(np.maximum(before[ends] - before[starts + 1] + 1, 1), np.float64)

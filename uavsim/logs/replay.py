@@ -13,7 +13,10 @@ from uavsim import __version__
 from uavsim.failure import FAILED, PartError
 from uavsim.files import without_none
 from uavsim.flight import Flight, frame
+from uavsim.logs.doubt import doubted, ends
+from uavsim.logs.informed import telling
 from uavsim.logs.recording import Array, Recording
+from uavsim.logs.unseen import unseen
 from uavsim.onboard import launch
 from uavsim.onboard.launch.guarded import STATE
 from uavsim.plugins import plugged_in
@@ -44,6 +47,8 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
         clipping, all detections. Its ``scenario`` says what was replayed, and does not fly.
     """
     rate = recording.rate
+    used = launch.DetectorSettings() if settings is None else settings
+    recording = doubted(recording, used)
     columns, detections, reason = _watch(lambda: _detector(settings, rate), recording)
     t, fx, fy, fz = recording.readings.T
     tables = {
@@ -51,13 +56,15 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
         "detector": frame("detector", {"t": t[: columns["recognised"].size], **columns}),
     }
     events = [{"t": when, "event": "launch_detected"} for when in detections]
-    used = launch.DetectorSettings() if settings is None else settings
     about: dict[str, Any] = {
         "name": recording.files[0],
         "recording": {"files": list(recording.files), "map": recording.mapping, "rate": rate},
         "detector": asdict(used),
     }
     score = _score(recording, used.kind, detections)
+    if not detections and not reason:
+        why = unseen(recording, used)
+        score["recording"] |= {"unseen": why.document(), "remarks": [*recording.remarks, *why.remarks()]}
     if reason:
         score |= {"outcome": FAILED, "reason": reason}
     return Flight(about, tables, events, score)
@@ -77,7 +84,11 @@ def _watch(build: Callable[[], Any], recording: Recording) -> tuple[dict[str, ND
     try:
         for part in recording.parts:
             detector, resume = build(), np.inf
-            for t, fx, fy, fz in _rows(recording.readings[part.start : part.stop]):
+            readings = recording.readings[part.start : part.stop]
+            tell = telling(detector, readings[:, 0], recording.series)
+            for k, (t, fx, fy, fz) in enumerate(_rows(readings)):
+                if tell is not None:
+                    tell(k)
                 if t >= resume:
                     detector.reset()
                     resume = np.inf
@@ -149,8 +160,9 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
             "readings": len(recording.readings),
             "rate": recording.rate,
             "gaps": [asdict(gap) for gap in recording.gaps()],
-            "clipping": [asdict(clipped) for clipped in recording.clipping()],
+            "clipping": [asdict(clipped) for clipped in ends(recording)],
             "detections": detections,
+            "unseen": None,
             "pause": PAUSE,
             "remarks": list(recording.remarks),
         },
