@@ -260,6 +260,8 @@ def _with_numbers(encoding: str, lines: Sequence[_Line], data: Sequence[_Line], 
         elif bare < len(names):
             remarks.append(f"there are {len(names)} names, and lines of {bare} values: the last columns are empty")
     decimal = _decimal(rows) if best.separator != "," else "."
+    if names is not None and _is_commented(lines, start, names):
+        remarks.append("the names stand in a comment")
     if decimal == ",":
         remarks.append("numbers are written with a decimal comma")
     if units:
@@ -300,6 +302,12 @@ def _names(
         if len(last) > 1 or bare == 1:
             return last, ()
     return None, ()
+
+
+def _is_commented(lines: Sequence[_Line], start: int, names: Sequence[str]) -> bool:
+    """Whether no line before the numbers but a comment holds the first and the last name."""
+    plain = [line.text for line in lines if line.start < start and line.comment is None]
+    return not any(names[0] in text and names[-1] in text for text in plain)
 
 
 def _end_of(before: Sequence[_Line], lines: Sequence[_Line], best: _Reading) -> int:

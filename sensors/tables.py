@@ -58,6 +58,10 @@ class TableFile(Protocol):
 
 def table_of(held: Held) -> TableFile:
     """Look at a table; ValueError, one line, if it is none."""
+    if held.head.startswith(b"ARROW1"):
+        return FeatherTable(held)
+    if held.head.startswith(b"FEA1"):
+        raise ValueError("is a Feather file of version 1: write it anew, as version 2 or as Parquet")
     return ParquetTable(held) if held.head.startswith(b"PAR1") else CsvTable(held)
 
 
@@ -310,18 +314,7 @@ class ParquetTable:
                 yield batch
 
     def _is_written(self, name: str) -> bool:
-        """Whether a column is text; ValueError if it holds neither that nor numbers or times."""
-        import pyarrow as pa
-
-        if self.names.count(name) > 1:
-            raise ValueError(f"has {self.names.count(name)} columns {brief(name)!r}")
-        kind = self._schema.field(name).type
-        values = kind.value_type if pa.types.is_dictionary(kind) else kind
-        if _is_text(values):
-            return True
-        if not (_is_number(values) or _seconds(values)):
-            raise ValueError(f"column {brief(name)!r} holds {brief(str(kind))}, not numbers")
-        return False
+        return _is_written(self._schema, name)
 
     @staticmethod
     def _check_size(metadata: "pq.FileMetaData", columns: set[str]) -> None:
@@ -345,8 +338,62 @@ class ParquetTable:
             yield parquet
 
 
+class FeatherTable:
+    """A Feather file of version 2, which is an Arrow file: batches of columns."""
+
+    remarks: tuple[str, ...] = ()
+
+    def __init__(self, held: Held) -> None:
+        self._held = held
+        with _parquet_understood("Feather"), self._opened() as file:
+            self._schema = file.schema
+            self._count = file.num_record_batches
+        self.names: tuple[str, ...] = tuple(self._schema.names)
+        if len(self.names) > MOST_COLUMNS:
+            raise ValueError(f"has {len(self.names)} columns; at most {MOST_COLUMNS} are read")
+
+    def read(self, columns: Collection[str]) -> dict[str, Array]:
+        """Return columns of it as numbers."""
+        return _joined(self.batches(columns), columns)
+
+    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+        """Yield columns of it as numbers, some rows at a time."""
+        for name in columns:
+            _is_written(self._schema, name)
+        places = {name: self.names.index(name) for name in columns}
+        with _parquet_understood("Feather"), self._opened(sorted(places.values())) as file:
+            for i in range(self._count):
+                batch = file.get_batch(i)
+                for first in range(0, batch.num_rows, BATCH):
+                    some = batch.slice(first, BATCH)
+                    yield {name: _floats(some.column(name)) for name in places}
+
+    @contextmanager
+    def _opened(self, places: list[int] | None = None) -> "Iterator[pa.ipc.RecordBatchFileReader]":
+        import pyarrow as pa
+
+        options = pa.ipc.IpcReadOptions(included_fields=places, use_threads=False)
+        with self._held.open() as file, pa.ipc.open_file(file, options=options) as reader:
+            yield reader
+
+
+def _is_written(schema: "pa.Schema", name: str) -> bool:
+    """Whether a column is text; ValueError if it holds neither that nor numbers or times."""
+    import pyarrow as pa
+
+    if schema.names.count(name) > 1:
+        raise ValueError(f"has {schema.names.count(name)} columns {brief(name)!r}")
+    kind = schema.field(name).type
+    values = kind.value_type if pa.types.is_dictionary(kind) else kind
+    if _is_text(values):
+        return True
+    if not (_is_number(values) or _seconds(values)):
+        raise ValueError(f"column {brief(name)!r} holds {brief(str(kind))}, not numbers")
+    return False
+
+
 @contextmanager
-def _parquet_understood() -> Iterator[None]:
+def _parquet_understood(what: str = "Parquet") -> Iterator[None]:
     """Say in one line what pyarrow says of a file that is damaged."""
     import pyarrow as pa
 
@@ -354,9 +401,9 @@ def _parquet_understood() -> Iterator[None]:
         yield
     except (pa.ArrowException, OSError, UnicodeError) as error:
         said = brief(" ".join(str(error).split()), LONGEST_REASON)
-        raise ValueError(f"not a Parquet file that can be read ({said})") from None
+        raise ValueError(f"not a {what} file that can be read ({said})") from None
     except MemoryError:
-        raise ValueError("not a Parquet file that can be read (it asks for more memory than there is)") from None
+        raise ValueError(f"not a {what} file that can be read (it asks for more memory than there is)") from None
 
 
 def _is_number(kind: "pa.DataType") -> bool:

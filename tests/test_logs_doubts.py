@@ -1,4 +1,4 @@
-"""What is doubtful about a log is said in words that name it, what is sound is not; that nothing is seen is explained."""
+"""What is doubtful about a log is said in words that name it, what is sound is not; silence is explained."""
 
 from dataclasses import replace
 from typing import Any

@@ -27,6 +27,7 @@ SERIES = {
     "north_speed": "m/s",
     "east_speed": "m/s",
     "down_speed": "m/s",
+    "ground_speed": "m/s",
     "clips_x": "",
     "clips_y": "",
     "clips_z": "",
@@ -36,6 +37,7 @@ SERIES = {
 pressure height, attitude, velocity over ground, the log's own counts of clipped readings, satellites in use."""
 GAP = 3.0  # median intervals, beyond which readings are missing; as the detectors have it
 CLIPPED = 1.5 * STANDARD_GRAVITY  # m/s²; an extreme below is no end of a range
+SAMPLED_AND_HELD = 0.3  # share of rows that repeat those before them, from which a log holds each reading for some
 HELD = 3  # readings in a row that hold the extreme value to call it clipped
 
 
@@ -107,7 +109,9 @@ class Recording:
     series : mapping
         What else the log holds, by the names of `SERIES`.
     cuts : tuple of int
-        Rows at which a part begins whose clock began anew; none if the log is of one part.
+        Rows at which a part begins, whose clock began anew or whose rate is another; none if the log is of one part.
+    others : mapping
+        Readings of the log's other accelerometers, as `readings`, by the names of their messages.
     """
 
     files: tuple[str, ...]
@@ -116,6 +120,7 @@ class Recording:
     remarks: tuple[str, ...]
     series: Mapping[str, Series] = field(default_factory=dict)
     cuts: tuple[int, ...] = ()
+    others: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def parts(self) -> list[range]:
@@ -123,21 +128,41 @@ class Recording:
         return [range(*ends) for ends in pairwise((0, *self.cuts, len(self.readings)))]
 
     @property
+    def axes(self) -> tuple[str, ...]:
+        """Axes that the log holds."""
+        held = np.atleast_1d(np.isfinite(self.readings[:, 1:]).any(axis=0)).tolist()
+        return tuple(axis for axis, is_held in zip(AXES, held, strict=True) if is_held)
+
+    @property
     def rate(self) -> float:
         """Median rate, Hz."""
-        interval = float(np.median(np.diff(self.readings[:, 0])))
-        return 1.0 / interval if interval > 0.0 else np.inf
+        return self.rate_of(range(len(self.readings)))
+
+    def rate_of(self, part: range) -> float:
+        """Median rate of a part, Hz."""
+        step = np.diff(self.readings[part.start : part.stop, 0])
+        step = step[step > 0.0]
+        return 1.0 / float(np.median(step)) if step.size else np.inf
 
     @property
     def span(self) -> tuple[float, float]:
-        """First and last time, s."""
-        return float(self.readings[0, 0]), float(self.readings[-1, 0])
+        """Least and greatest time, s."""
+        return float(self.readings[:, 0].min()), float(self.readings[:, 0].max())
+
+    @property
+    def duration(self) -> float:
+        """Of all parts together, s."""
+        t = self.readings[:, 0]
+        return float(sum(t[part.stop - 1] - t[part.start] for part in self.parts))
 
     def gaps(self) -> list[Gap]:
-        """Where more than `GAP` median intervals lie between two readings."""
-        t = self.readings[:, 0]
-        rows = np.flatnonzero(np.diff(t) > GAP / self.rate * (1.0 + 1e-6))
-        return [Gap(float(t[i]), float(t[i + 1])) for i in rows]
+        """Where more than `GAP` median intervals of its part lie between two readings."""
+        found = []
+        for part in self.parts:
+            t = self.readings[part.start : part.stop, 0]
+            rows = np.flatnonzero(np.diff(t) > GAP / self.rate_of(part) * (1.0 + 1e-6))
+            found += [Gap(float(t[i]), float(t[i + 1])) for i in rows]
+        return found
 
     def clipping(self) -> list[Clipping]:
         """Return the axes whose greatest or least value is held for `HELD` readings in a row that differ otherwise.
