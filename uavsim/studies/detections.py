@@ -10,12 +10,10 @@ from itertools import repeat
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uavsim.onboard.launch import DetectorSettings, build
 from uavsim.onboard.launch.compiled import Forces
-
-Indices = NDArray[np.int64]
+from uavsim.onboard.launch.loops import Indices, loop_of, row_of
 
 FIRST_BLOCK = 4096  # samples that are looked at before more are
 
