@@ -220,6 +220,23 @@ def test_coarse_readings_of_a_quiet_sensor_are_no_repetition() -> None:
     assert "repeat" not in told(recorded(readings))[1]
 
 
+@pytest.mark.parametrize(
+    ("change", "disagrees"),
+    [
+        (lambda f: f, False),
+        (lambda f: 1.05 * f + 1.0, False),
+        (lambda f: 0.5 * f, True),
+        (lambda f: f * [1, -1, -1], True),
+    ],
+)
+def test_two_accelerometers_that_disagree_are_told(change: Any, disagrees: bool) -> None:
+    readings, other = made(), made(seed=6, rate=50.0)
+    other[:, 0] += 0.003
+    other[:, 1:] = change(other[:, 1:])
+    _, said = told(replace(recorded(readings), others={"IMU[1]": other}))
+    assert ("two IMUs disagree: IMU[1]" in said) is disagrees
+
+
 def test_evidence_does_not_depend_on_how_it_is_cut() -> None:
     readings = made()
     readings[500:760, 1:] = readings[500, 1:]
@@ -291,7 +308,17 @@ def test_rules_that_take_gravity_off_do_it_by_the_logs_attitude() -> None:
     readings = np.column_stack([t, push + G0 * np.sin(pitch), 0.0 * t, -G0 * np.cos(pitch)])
     attitude = {"roll": (t[::10], 0.0 * t[::10]), "pitch": (t[::10], pitch[::10])}
     assert told(recorded(readings), kind="px4")[0]
-    assert told(recorded(readings, **attitude), kind="px4")[0] == []
+    found, said = told(recorded(readings, **attitude), kind="px4")
+    assert found == []
+    assert "told the log's attitude" in said
+
+
+def test_a_rule_by_magnitude_is_doubted_where_the_force_pulls_backwards() -> None:
+    readings = made(peak=-8.0)
+    found, said = told(recorded(readings), kind="px4-norm")
+    assert len(found) == 1
+    assert "along −x, backwards" in said
+    assert told(recorded(made()), kind="px4-norm")[1] == ""
 
 
 def test_inav_has_its_satellites_where_the_log_has_them() -> None:

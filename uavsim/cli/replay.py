@@ -99,6 +99,7 @@ def _replay_log(
 ) -> None:
     from uavsim.logs import read_log, replay_log
     from uavsim.scenario import load_scenario
+    from uavsim.studies.low_rates import remark
     from uavsim.views import documents, terminal
     from uavsim.views import log as view
 
@@ -106,7 +107,7 @@ def _replay_log(
     if other:
         raise typer.BadParameter(f"{other[0]!r}: of a log only detector.… can be set", param_hint="--set")
     with user_input():
-        detector = load_scenario("catapult", overrides=settings).detector if settings else None
+        detector = load_scenario("catapult", overrides=settings).detector
         recording = read_log(logs, mapping)
 
     def draw(folder: Path) -> None:
@@ -115,6 +116,8 @@ def _replay_log(
     with folder(out, f"{logs[0].stem}-replay", overwrite=overwrite) as place:
         with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
             replayed = replay_log(recording, detector)
+        if settings and (said := remark(detector, recording.rate)):
+            replayed.score["recording"]["remarks"].append(said)
         replayed.write(place.folder, draw if plots else None)
     if as_json:
         document(documents.flight(replayed, place.target))

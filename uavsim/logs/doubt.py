@@ -6,17 +6,18 @@ axes         at rest the force points up, along -z in body axes forward-right-do
 clipping     an extreme that is held while the readings live, or what the log's own counters say
 range        a level of the detector that lies beyond what is clipped, less 1 g, as `fly` has it
 repeats      readings that stay as they are for far longer than is usual in the log
+others       another accelerometer of the same log that does not read the same
 
 What at rest reads 32.2 is taken as ft/s² unless the map has a factor, and it is said. All else is left as it is.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from uavsim.logs.evidence import Evidence, Rest, collected
-from uavsim.logs.recording import AXES, COLUMNS, Clipping, Recording
+from uavsim.logs.recording import AXES, COLUMNS, Array, Clipping, Recording
 from uavsim.onboard.launch.kinds import Need
 from uavsim.onboard.launch.settings import DetectorSettings, if_known
 from uavsim.truth import STANDARD_GRAVITY
@@ -29,6 +30,9 @@ SOME = 0.1  # part of them that reads 1 g, from which on the unit is right
 IN_FEET = 0.06  # of 1 g in ft/s², likewise: what is further off is no unit but a scale
 NOTHING = 0.3 * G0  # m/s², below which gravity has been taken off
 ALONG = 0.7  # of 1 g along an axis, from which on that is up: tilted by less than 45°
+AVERAGED = 0.1  # s, over which two accelerometers are compared: vibration and lags of some samples are no difference
+APART = 0.3  # of 1 g, or of the force itself, by which they may differ: offsets of coarse parts, and their scales
+BEFORE = 0.05  # s before a detection, over which its force is averaged
 TAKES = ("px4", "px4-norm", "ardupilot", "altos")
 
 
@@ -46,7 +50,7 @@ def doubted(recording: Recording, settings: DetectorSettings, evidence: Evidence
     """
     seen = collected(recording.readings, recording.rate) if evidence is None else evidence
     rest = seen.rest()
-    remarks = [*_unit(rest, recording), *_axes(rest), *_repeats(seen), *_counted(recording)]
+    remarks = [*_unit(rest, recording), *_axes(rest), *_repeats(seen), *_counted(recording), *_others(recording)]
     if is_in_feet(rest) and not scaled(recording.mapping):
         readings = recording.readings.copy()
         readings[:, 1:] *= FOOT
@@ -144,6 +148,23 @@ def _repeats(seen: Evidence) -> Iterator[str]:
     )
 
 
+def backwards(recording: Recording, settings: DetectorSettings, detections: Sequence[float]) -> list[str]:
+    """Tell detections of a rule that takes a force in any direction, while the force pulls backwards."""
+    if if_known(settings).name != "px4-norm" and settings.axes != "any":
+        return []
+    t, f = recording.readings[:, 0], recording.readings[:, 1]
+    said = []
+    for when in detections:
+        near = f[(t > when - BEFORE) & (t <= when)]
+        mean = float(np.nanmean(near)) if np.isfinite(near).any() else 0.0
+        if mean < -G0:
+            said.append(
+                f"at {when:.3f} s f_x is {mean / G0:.2g} g: the rule goes by the magnitude of the force, and this one "
+                "lies along −x, backwards, as of an arrest"
+            )
+    return said
+
+
 def counted(recording: Recording) -> Mapping[str, tuple[int, float, float]]:
     """Return what the log's own counters say: how many readings of an axis were clipped, and between which times, s."""
     found = {}
@@ -164,6 +185,35 @@ def _counted(recording: Recording) -> Iterator[str]:
     for axis, (total, start, end) in counted(recording).items():
         if total:
             yield f"clipping: the log's own counter has {total} readings of {axis} from {start:.3f} to {end:.3f} s"
+
+
+def _others(recording: Recording) -> Iterator[str]:
+    """Tell where the log's other accelerometers read something else."""
+    own = _means(recording.readings)
+    for name, readings in recording.others.items():
+        others = _means(readings)
+        both = sorted(own.keys() & others.keys())
+        if not both:
+            continue
+        first, second = (np.array([of[k] for k in both]) for of in (own, others))
+        away = np.linalg.norm(np.nan_to_num(first - second), axis=1)
+        most = int(np.argmax(away))
+        allowed = APART * max(G0, float(np.linalg.norm(np.nan_to_num(first[most]))))
+        if away[most] > allowed or float(np.median(away)) > APART * G0:
+            yield (
+                f"two IMUs disagree: {name} is up to {away[most] / G0:.2g} g away from the one that is replayed (at "
+                f"{both[most] * AVERAGED:.2f} s), {float(np.median(away)) / G0:.2g} g in the middle; map fx={name}.… "
+                "and so on to replay the other"
+            )
+
+
+def _means(readings: Array) -> dict[int, Array]:
+    """Mean force in each stretch of `AVERAGED`, by its number."""
+    sound = np.isfinite(readings).all(axis=1)
+    numbers = np.floor(readings[sound, 0] / AVERAGED)
+    places, which, n = np.unique(numbers, return_inverse=True, return_counts=True)
+    means = np.column_stack([np.bincount(which, column, places.size) for column in readings[sound, 1:].T])
+    return dict(zip(places.astype(np.int64).tolist(), means / n[:, np.newaxis], strict=True))
 
 
 def ends(recording: Recording) -> list[Clipping]:

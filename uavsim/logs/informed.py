@@ -46,6 +46,16 @@ def telling(detector: Any, t: Array, series: Mapping[str, Series]) -> Tell | Non
     return tell
 
 
+def sources(detector: Any, series: Mapping[str, Series]) -> list[str]:
+    """Say what of a log a detector is told besides the force."""
+    said = []
+    if hasattr(detector, "attitude") and {"roll", "pitch"} <= set(series):
+        said.append(f"the detector is told the log's attitude, {series['pitch'].source}")
+    if hasattr(detector, "satellites") and {"north_speed", "east_speed", "satellites"} <= set(series):
+        said.append(f"the detector is told the log's satellites, {series['north_speed'].source}")
+    return said
+
+
 def _sound(series: Series) -> tuple[Array, Array]:
     sound = np.isfinite(series.values) & np.isfinite(series.t)
     return series.t[sound], series.values[sound]

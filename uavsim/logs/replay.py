@@ -2,7 +2,7 @@
 
 from array import array
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
@@ -13,8 +13,8 @@ from uavsim import __version__
 from uavsim.failure import FAILED, PartError
 from uavsim.files import without_none
 from uavsim.flight import Flight, frame
-from uavsim.logs.doubt import doubted, ends
-from uavsim.logs.informed import telling
+from uavsim.logs.doubt import backwards, doubted, ends
+from uavsim.logs.informed import sources, telling
 from uavsim.logs.recording import AXES, COLUMNS, Array, Recording
 from uavsim.logs.unseen import unseen
 from uavsim.onboard import launch
@@ -63,6 +63,8 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
         "recording": {"files": list(recording.files), "map": recording.mapping, "rate": rate},
         "detector": asdict(used),
     }
+    told = sources(launch.build(used, rate), recording.series)
+    recording = replace(recording, remarks=(*recording.remarks, *told, *backwards(recording, used, detections)))
     score = _score(recording, used.kind, detections)
     if not detections and not reason:
         why = unseen(recording, used)

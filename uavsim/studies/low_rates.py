@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.launch import DetectorSettings
+from uavsim.onboard.launch import DetectorSettings, build
 from uavsim.studies.detections import BatchDetector
-from uavsim.studies.false_alarms import DISTURBANCES, PIECE
+from uavsim.studies.false_alarms import CLIP, DISTURBANCES, PIECE
 from uavsim.studies.intervals import rate_interval
 from uavsim.studies.neyman_pearson import earliest_deadline
 from uavsim.studies.signals import MEASURED_CATAPULT, Stroke, record_launches
@@ -34,6 +34,9 @@ FAST = 1000.0  # Hz, at which disturbances are made
 PASSED, STOPPED = 0.32, 0.40  # of the log's rate: up to where the low-pass is flat, and from where on nothing is left
 DOWN = 60.0  # dB, of what is not passed
 LOAD, RAIL = 4.1 * G0, 20.0  # m/s², the load that is no launch; degrees, of the rail
+SLOW = 250.0  # Hz; of faster logs one reading is shorter than any shock, and no rule decides on it
+REST = 2.0  # m/s², along the rail
+SEED = 16
 PHASES = 20  # of the samples, over which the bound is averaged
 
 
@@ -137,3 +140,27 @@ def bound(rate: float, sigma_g: float) -> float | None:
             return None
         found.append(phase + earliest)
     return float(np.mean(found))
+
+
+def decides_alone(settings: DetectorSettings, rate: float) -> bool:
+    """Whether one reading of the accelerometer's whole range, after two seconds of rest, is a launch to a detector."""
+    detector = build(settings, rate)
+    forces = [REST] * round(2.0 * rate) + [CLIP * G0] + [REST] * round(rate)
+    seen = [detector.step(k / rate, f, 0.0, -G0) for k, f in enumerate(forces)]
+    return True in seen
+
+
+def remark(settings: DetectorSettings, rate: float) -> str | None:
+    """Say how often a detector cries wolf that decides on one reading of a slow log; None if this one does not.
+
+    It is tried for an hour of handling at the nearest rate that is a whole part of 1 kHz, the same hour at each call.
+    """
+    if rate > SLOW or not decides_alone(settings, rate):
+        return None
+    near = FAST / round(FAST / rate)
+    (plain,), (quiet,) = (alarms((settings,), near, 1.0, seed=SEED, filtered=filtered) for filtered in (False, True))
+    return (
+        f"{settings.kind} decides on one reading at {rate:.4g} Hz, without confirmation: in handling {plain.rate:.3g} "
+        f"alarms an hour at {near:.4g} Hz, {quiet.rate:.3g} if what is above {STOPPED * near:.3g} Hz was filtered off "
+        "before it was sampled"
+    )
