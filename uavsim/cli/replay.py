@@ -2,12 +2,16 @@
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from uavsim.cli.common import NoPlots, Out, Overwrite, Plugin, folder, plotter, plug_in, user_input
 from uavsim.cli.printed import Json, document
+
+if TYPE_CHECKING:
+    from uavsim.flight import Flight
+    from uavsim.logs import Recording
 
 
 def replay(
@@ -20,6 +24,9 @@ def replay(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of the detector.")
     ] = None,
+    all_launches: Annotated[
+        bool, typer.Option("--all-launches", help="Cut a log into its flights, and replay each by itself.")
+    ] = False,
     out: Out = None,
     plugin: Plugin = None,
     no_plots: NoPlots = False,
@@ -37,8 +44,8 @@ def replay(
     """
     plug_in(plugin)
     if len(logs) == 1 and _is_flight(logs[0]):
-        if mapping is not None or settings:
-            option = "--map" if mapping is not None else "--set"
+        if mapping is not None or settings or all_launches:
+            option = "--map" if mapping is not None else "--set" if settings else "--all-launches"
             raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
         _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
     else:
@@ -47,6 +54,7 @@ def replay(
             ",".join(mapping) if mapping else None,
             settings or [],
             out,
+            all_launches=all_launches,
             plots=not no_plots,
             overwrite=overwrite,
             as_json=as_json,
@@ -93,11 +101,13 @@ def _replay_log(
     settings: list[str],
     out: Path | None,
     *,
+    all_launches: bool,
     plots: bool,
     overwrite: bool,
     as_json: bool,
 ) -> None:
-    from uavsim.logs import read_log, replay_log
+    from uavsim.cli.replay_in_lots import in_lots
+    from uavsim.logs import is_long, read_log, replay_log
     from uavsim.scenario import load_scenario
     from uavsim.studies.low_rates import remark
     from uavsim.views import documents, terminal
@@ -108,17 +118,26 @@ def _replay_log(
         raise typer.BadParameter(f"{other[0]!r}: of a log only detector.… can be set", param_hint="--set")
     with user_input():
         detector = load_scenario("catapult", overrides=settings).detector
-        recording = read_log(logs, mapping)
+        in_parts = all_launches or is_long(logs)
+        recording = None if in_parts else read_log(logs, mapping)
+
+    def made(recording: "Recording") -> "Flight":
+        flight = replay_log(recording, detector)
+        if settings and (said := remark(detector, recording.rate)):
+            flight.score["recording"]["remarks"].append(said)
+        return flight
 
     def draw(folder: Path) -> None:
         view.save_plot(replayed, folder / "plots")
 
     with folder(out, f"{logs[0].stem}-replay", overwrite=overwrite) as place:
-        with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
-            replayed = replay_log(recording, detector)
-        if settings and (said := remark(detector, recording.rate)):
-            replayed.score["recording"]["remarks"].append(said)
-        replayed.write(place.folder, draw if plots else None)
+        with user_input(f"{logs[0]}: " if recording else ""):  # a detector may not fit the log's rate
+            if recording is None:
+                replayed = in_lots(logs, mapping, detector, made, place.folder, all_launches=all_launches, plots=plots)
+            else:
+                replayed = made(recording)
+        if recording is not None:
+            replayed.write(place.folder, draw if plots else None)
     if as_json:
         document(documents.flight(replayed, place.target))
         return
