@@ -284,6 +284,17 @@ def test_how_long_it_was_above_the_level_is_told() -> None:
     assert why["nearest"] == []
 
 
+def test_a_pull_up_is_no_launch_along_another_axis() -> None:
+    """A throw, and turns of up to 6 g in the flight after it: no axis is doubted for them."""
+    readings = made(peak=2.4, sigma=0.3)
+    t = readings[:, 0]
+    turn = np.clip((t - 4.0) / 0.8, 0.0, 1.0) * (t < 5.5)
+    readings[:, 3] -= 5.0 * G0 * turn
+    recording = recorded(readings)
+    assert told(recording) == ([], "")
+    assert told(recording, axes=("-z",))[0] != []
+
+
 def test_where_there_is_nothing_nothing_is_named() -> None:
     flight = replay_log(recorded(made(peak=0.0)))
     assert flight.score["recording"]["unseen"]["nearest"] == []

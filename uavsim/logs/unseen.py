@@ -24,6 +24,8 @@ AROUND = (3.0, 1.5)  # s before and after the greatest force that a rule looks a
 PLACES = 3  # greatest forces along each axis that are looked at
 LOWEST = 1.8 * G0  # m/s², level below which no launch is looked for: handling has nearly as much, a throw 2.4 g
 STEPS = 20  # levels that are tried
+STEADY, STRETCHES = (0.7, 0.1), 6  # s before a detection along another axis, in so many stretches
+UNSTEADY = 0.5 * G0  # m/s², by which the means of the stretches differ in flight; those of a rail that shakes do not
 WORTH = 1.3 * G0  # m/s², force along an axis from which on it is looked at
 
 
@@ -190,9 +192,23 @@ def _other_axes(
     """Try the same rule along the axes that it does not read."""
     for axis, near in places.items():
         if axis not in axes and settings.axes != "any":
-            found = _first(replace(settings, axes=(axis,)), recording.rate, near)  # type: ignore[arg-type]
+            other = replace(settings, axes=(axis,))  # type: ignore[arg-type]
+            times = [(_first(other, recording.rate, [one]), one) for one in near]
+            found = min((t for t, one in times if t is not None and _from_rest(one, t)), default=None)
             if found is not None:
                 yield Nearest(f"'detector.axes=[\"{axis}\"]'", axis, found)
+
+
+def _from_rest(readings: Array, t: float) -> bool:
+    """Whether the force was steady before a time, s: a launch begins so, a pull-up in flight does not."""
+    before = readings[(readings[:, 0] > t - STEADY[0]) & (readings[:, 0] < t - STEADY[1])]
+    means = [
+        np.nanmean(part[:, 1:], axis=0)
+        for part in np.array_split(before, STRETCHES)
+        if len(part) and np.isfinite(part[:, 1:]).any(axis=0).all()
+    ]
+    sizes = [float(np.linalg.norm(mean)) for mean in means]
+    return not sizes or max(sizes) - min(sizes) < UNSTEADY
 
 
 def _lower(
