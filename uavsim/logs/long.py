@@ -201,6 +201,12 @@ class _Thin:
 def _whole(stretch: Flight, survey: Survey, detections: Sequence[float]) -> Flight:
     """Return a stretch's flight with the figures of the whole log."""
     said = stretch.score["recording"]
+    outside = [t for t in detections if not said["start"] <= t <= said["end"]]
+    detections = [
+        *(t for t in outside if t < said["start"]),
+        *said["detections"],  # there it is by each reading, and with all that the log tells besides
+        *(t for t in outside if t > said["end"]),
+    ]
     inside = {"start": said["start"], "end": said["end"], "readings": said["readings"]}
     recording: dict[str, Any] = {
         **said,

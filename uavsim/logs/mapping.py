@@ -90,7 +90,7 @@ def recording_of(paths: Sequence[Path], mapping: str | None, tables: Sequence[Ta
         pieces = [piece for piece in pieces if piece.force]
         if not pieces or not any("fx" in piece.force or set(piece.force) & set(sources) for piece in pieces):
             missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
-            raise ValueError(_lacks(missing, [name for table in tables for name in table.columns], tables=tables))
+            raise ValueError(lacks(missing, [name for table in tables for name in table.columns], tables=tables))
         factors = {axis: factor for piece in pieces for axis, factor in piece.factors.items()}
         check_factors(factors)
         readings, cuts, unwrapped = _merged(pieces)
@@ -118,7 +118,7 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
         missing = lacking or [name for name in COLUMNS if name not in held]
         if not alone and "t" in missing:
             missing = ["t"]  # what it lacks besides may be in another file
-        raise ValueError(_lacks(missing, found, [sources[name].column for name in missing if name in sources], [table]))
+        raise ValueError(lacks(missing, found, [sources[name].column for name in missing if name in sources], [table]))
     if "t" not in held or len(held) == 1:
         return None
     values = _values(table, held, remarks)
@@ -160,7 +160,7 @@ def check_found(sources: Mapped, tables: Sequence[Table]) -> None:
     }
     if lacking := [ours for ours in sources if ours not in held]:
         found = [name for table in tables for name in table.columns]
-        raise ValueError(_lacks(lacking, found, [sources[ours].column for ours in lacking], tables))
+        raise ValueError(lacks(lacking, found, [sources[ours].column for ours in lacking], tables))
 
 
 def source_of(name: str, table: Table, sources: Mapped) -> Source:
@@ -232,9 +232,8 @@ def one_g(force: Array, name: str, remarks: list[str]) -> float:
     return STANDARD_GRAVITY / counts
 
 
-def _lacks(
-    missing: Sequence[str], found: Sequence[str], named: Sequence[str] = (), tables: Sequence[Table] = ()
-) -> str:
+def lacks(missing: Sequence[str], found: Sequence[str], named: Sequence[str] = (), tables: Sequence[Table] = ()) -> str:
+    """Say what is lacking, what there is, and what to map."""
     what = f"has no column {', '.join(repr(brief(name)) for name in named)}" if named else f"lacks {', '.join(missing)}"
     if any(not table.named for table in tables):
         return (

@@ -23,6 +23,7 @@ from uavsim.logs.mapping import (
     check_found,
     check_unit,
     is_scaled,
+    lacks,
     one_g,
     read_log,
     recording_of,
@@ -141,7 +142,11 @@ class Stream:
             check_found(self._sources, self._tables)
             holding = [table for table in self._tables if self._axes_of(table)]
             axes = {self._axes_of(table) for table in holding}
-            if len(axes) != 1 or not {"fx", *self._sources} & set(next(iter(axes))):
+            held = {axis for each in axes for axis in each}
+            if not {"fx", *self._sources} & held:
+                found = [name for table in self._tables for name in table.columns]
+                raise ValueError(lacks([axis for axis in AXES if axis not in held], found, (), self._tables))
+            if len(axes) != 1:
                 raise ValueError(
                     f"a log of more than {MOST_AT_ONCE} readings is read in parts, and must hold all axes, and a time, "
                     "in one file: map fx=… and so on to columns of one, or write it so"
