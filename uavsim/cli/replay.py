@@ -109,6 +109,7 @@ def _replay_log(
     from uavsim.cli.replay_in_lots import in_lots
     from uavsim.logs import is_long, read_log, replay_log
     from uavsim.scenario import load_scenario
+    from uavsim.studies.low_rates import remark
     from uavsim.views import documents, terminal
     from uavsim.views import log as view
 
@@ -116,12 +117,15 @@ def _replay_log(
     if other:
         raise typer.BadParameter(f"{other[0]!r}: of a log only detector.… can be set", param_hint="--set")
     with user_input():
-        detector = load_scenario("catapult", overrides=settings).detector if settings else None
+        detector = load_scenario("catapult", overrides=settings).detector
         in_parts = all_launches or is_long(logs)
         recording = None if in_parts else read_log(logs, mapping)
 
     def made(recording: "Recording") -> "Flight":
-        return replay_log(recording, detector)
+        flight = replay_log(recording, detector)
+        if settings and (said := remark(detector, recording.rate)):
+            flight.score["recording"]["remarks"].append(said)
+        return flight
 
     def draw(folder: Path) -> None:
         view.save_plot(replayed, folder / "plots")

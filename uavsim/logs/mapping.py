@@ -21,6 +21,7 @@ SLOW = 20.0  # Hz, below which a stroke of 0.3 s has a handful of readings
 OTHER = "other "  # before the label of a message of another accelerometer
 LOOKS_LIKE_G = (0.7, 1.4)  # median of |f|: at rest and in level flight it is 1 in g and 9.8 in m/s²
 TOO_MUCH = 400.0  # m/s², median of |f|: no flight feels 40 g for most of the time, counts and mg read so
+STRETCH = 25  # readings that are averaged to tell a force from noise about none
 UNEQUAL = 1.2  # ratio of the axes' factors above which their units are mixed
 
 
@@ -361,7 +362,7 @@ def check_unit(force: Array) -> None:
         return  # of one axis alone the rest may be anything
     sizes = np.linalg.norm(force, axis=1)
     middle = float(np.nanmedian(sizes))
-    if LOOKS_LIKE_G[0] <= middle <= LOOKS_LIKE_G[1]:
+    if LOOKS_LIKE_G[0] <= middle <= LOOKS_LIKE_G[1] and _about(force) >= LOOKS_LIKE_G[0]:
         raise ValueError(
             f"the median of |f| is {middle:.3g}, which looks like g and not m/s²: map fx=…*9.80665 and so on (…*1 if "
             "it is m/s² all the same)"
@@ -370,6 +371,13 @@ def check_unit(force: Array) -> None:
         raise ValueError(
             f"the median of |f| is {middle:.4g}, which looks like mg or counts and not m/s²: map fx=…*factor and so on"
         )
+
+
+def _about(force: Array) -> float:
+    """Median of what |f| is about: noise alone, as where gravity has been taken off, is about 0."""
+    whole = len(force) // STRETCH * STRETCH
+    stretches = (force[:whole] if whole else force).reshape(-1, min(STRETCH, len(force)), len(AXES))
+    return float(np.median(np.linalg.norm(np.nan_to_num(stretches).mean(axis=1), axis=1)))
 
 
 def _remarks(readings: Array) -> list[str]:

@@ -4,10 +4,10 @@ The figure has the whole recording on the left, and on the right the first detec
 none, with the detector's windows below if it has any. Time is the log's own, in s.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -51,9 +51,28 @@ def lines(flight: "Flight") -> list[str]:
     said += [f"Warning: {flight.score['reason']}; what comes after is not read"] if flight.score["reason"] else []
     kind = flight.score["launch"]["detector"]
     if not found:
-        return [*said, f"{kind}: no launch detected; the greatest f_x is {_greatest(flight)}"]
+        none = f"{kind}: no launch detected; the greatest f_x is {_greatest(flight)}"
+        return [*said, none, *(_why(of["unseen"]) if of["unseen"] else ())]
     said += [f"{kind}: launch detected at {t:.4f} s" for t in found[:MOST_LINES]]
     return said if len(found) <= MOST_LINES else [*said, f"… and {len(found) - MOST_LINES} more, in events.json"]
+
+
+def _why(of: Mapping[str, Any]) -> list[str]:
+    """Explain that there is no detection: what was seen, what is needed, what would have seen something."""
+    forces = ", ".join(f"{s['axis']} {s['greatest'] / STANDARD_GRAVITY:.2f} g at {s['time']:.3f} s" for s in of["seen"])
+    said = [f"  seen: the greatest forces are {forces}"]
+    if of["level"] is not None:
+        own = [f"{s['axis']} was for {1e3 * s['above']:.0f} ms" for s in of["seen"] if s["axis"] in of["axes"]]
+        said.append(
+            f"  needed: more than {of['level'] / STANDARD_GRAVITY:.3g} g along {' or '.join(of['axes'])} "
+            f"(detector.{of['level_key']}) for some {1e3 * of['lasting']:.0f} ms (detector.{of['time_key']}); "
+            + (", ".join(own) or "there was none")
+        )
+    said += [
+        f"  nearest: --set {one['set']} would have seen one at {one['detected']:.3f} s along {one['axis']}"
+        for one in of["nearest"]
+    ]
+    return said if of["nearest"] else [*said, "  nearest: no axis, kind or lower level would have seen one"]
 
 
 def _greatest(flight: "Flight") -> str:
