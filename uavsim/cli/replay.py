@@ -18,7 +18,10 @@ def replay(
         typer.Option("--map", metavar="OURS=THEIRS,...", help="A log's columns, as t=time,fx=-Ay*9.80665; may repeat."),
     ] = None,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of the detector.")
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of detector, estimator, parts.")
+    ] = None,
+    noise: Annotated[
+        str | None, typer.Option("--noise", metavar="NAME=SD,...", help="Of a log's reading, as p_total=2.4,fx=0.5.")
     ] = None,
     out: Out = None,
     plugin: Plugin = None,
@@ -37,8 +40,8 @@ def replay(
     """
     plug_in(plugin)
     if len(logs) == 1 and _is_flight(logs[0]):
-        if mapping is not None or settings:
-            option = "--map" if mapping is not None else "--set"
+        if mapping is not None or settings or noise is not None:
+            option = "--map" if mapping is not None else "--set" if settings else "--noise"
             raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
         _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
     else:
@@ -46,6 +49,7 @@ def replay(
             logs,
             ",".join(mapping) if mapping else None,
             settings or [],
+            noise,
             out,
             plots=not no_plots,
             overwrite=overwrite,
@@ -91,6 +95,7 @@ def _replay_log(
     logs: list[Path],
     mapping: str | None,
     settings: list[str],
+    noise: str | None,
     out: Path | None,
     *,
     plots: bool,
@@ -98,23 +103,22 @@ def _replay_log(
     as_json: bool,
 ) -> None:
     from uavsim.logs import read_log, replay_log
-    from uavsim.scenario import load_scenario
+    from uavsim.logs.aired import with_airspeed
+    from uavsim.logs.airspeed import air_settings
     from uavsim.views import documents, terminal
     from uavsim.views import log as view
 
-    other = [given for given in settings if not given.strip().startswith("detector.")]
-    if other:
-        raise typer.BadParameter(f"{other[0]!r}: of a log only detector.… can be set", param_hint="--set")
     with user_input():
-        detector = load_scenario("catapult", overrides=settings).detector if settings else None
+        air = air_settings(settings, noise)
         recording = read_log(logs, mapping)
+    detector = air.scenario.detector if any(given.strip().startswith("detector.") for given in settings) else None
 
     def draw(folder: Path) -> None:
         view.save_plot(replayed, folder / "plots")
 
     with folder(out, f"{logs[0].stem}-replay", overwrite=overwrite) as place:
         with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
-            replayed = replay_log(recording, detector)
+            replayed = with_airspeed(replay_log(recording, detector), recording, air)
         replayed.write(place.folder, draw if plots else None)
     if as_json:
         document(documents.flight(replayed, place.target))

@@ -27,6 +27,7 @@ SERIES = {
     "north_speed": "m/s",
     "east_speed": "m/s",
     "down_speed": "m/s",
+    "ground_speed": "m/s",
     "clips_x": "",
     "clips_y": "",
     "clips_z": "",
