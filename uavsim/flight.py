@@ -206,7 +206,9 @@ def _read_table(name: str, file: Path) -> "pd.DataFrame":
         table = ParquetTable(look(file))
         missing = [column for column in UNITS[name] if column not in table.names and column not in DERIVED]
         if not missing:
-            found = table.frame([column for column in table.names if column in UNITS[name] or column in OF_LOGS], texts=("phase",))
+            found = table.frame(
+                [column for column in table.names if column in UNITS[name] or column in OF_LOGS], texts=("phase",)
+            )
             if name == "truth":
                 _check_clock(found["t"].to_numpy(float))
             return found

@@ -18,7 +18,8 @@ def replay(
         typer.Option("--map", metavar="OURS=THEIRS,...", help="A log's columns, as t=time,fx=-Ay*9.80665; may repeat."),
     ] = None,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of detector, estimator, parts.")
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of detector, estimator, parts."),
     ] = None,
     noise: Annotated[
         str | None, typer.Option("--noise", metavar="NAME=SD,...", help="Of a log's reading, as p_total=2.4,fx=0.5.")

@@ -48,7 +48,7 @@ def with_airspeed(flight: Flight, recording: Recording, settings: AirSettings) -
         of = flight.score["recording"]
         return replace(flight, score=flight.score | {"recording": of | {"remarks": [*of["remarks"], found]}})
     estimate = frame_of_rows("estimate", found.estimates)
-    columns = {name: estimate[name].to_numpy(dtype=float) for name in estimate}
+    columns: dict[str, Array] = {str(name): estimate[name].to_numpy(dtype=float) for name in estimate}
     others = of_pressures(columns["p_total"], columns["p_static"], settings.scenario.estimator.calibration)
     estimate = estimate.assign(**others.columns())
     reference = _reference(recording.series.get("airspeed_reference"), columns["t"])

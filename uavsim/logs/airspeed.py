@@ -15,7 +15,9 @@ The tare is the mean over the last seconds at rest before a launch, in the open,
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import inf
+from typing import Literal
 
 import numpy as np
 
@@ -24,12 +26,15 @@ from uavsim.failure import PartError
 from uavsim.logs.beliefs import KEYS, Noise, believed_of_log, known_age, parse_noise
 from uavsim.logs.clocks import Delay, delay_of
 from uavsim.logs.head import Head, head_of, lacking
-from uavsim.logs.quiet import Stretch, quiet
+from uavsim.logs.quiet import Rests, rests_of
 from uavsim.logs.recording import Array, Recording
 from uavsim.onboard.interface import AirReading, Estimate, Reading, TareWindow
 from uavsim.scenario import Scenario, load_scenario
 
-FLIES, HOLDS = 9.0, 3.0  # m/s and s: no fixed wing flies slower, no gust and no breath into a pitot lasts so long. By hand
+FLIES, HOLDS = (
+    9.0,
+    3.0,
+)  # m/s and s: no fixed wing flies slower, no gust and no breath into a pitot lasts so long. By hand
 BETWEEN = 5.0  # s at rest that part two flights. By hand
 LEAD = 0.5  # s before a recognised launch at which its tare ends, unless air_data.cover_off says when
 TARED = 10.0  # s of rest that are averaged at the most, unless air_data.tare_duration says how many
@@ -141,18 +146,18 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
         head = _on_one_clock(head, delay, age, said)
     if not _share(recording.readings, head):
         return (
-            f"no airspeed is estimated: pressures from {head.total.t[0]:.3f} to {head.total.t[-1]:.3f} s and force from "
+            f"no airspeed is estimated: pressures of {head.total.t[0]:.3f} to {head.total.t[-1]:.3f} s and force of "
             f"{recording.span[0]:.3f} to {recording.span[1]:.3f} s share no time, and no launch shows in both"
         )
-    stretches = quiet(recording.readings, head)
-    spans = cut(recording, stretches, launches, settings)
+    rests = rests_of(recording.readings, head)
+    spans = cut(recording, rests, launches, settings)
     belief = believed_of_log(
         recording,
         head,
         settings.scenario,
         named=settings.named,
         noise=settings.noise,
-        stretches=stretches,
+        stretches=rests.still,
         tare=spans[0].tare,
     )
     said += belief.said
@@ -177,7 +182,8 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
 
 def _of_kind(settings: AirSettings, head: Head) -> AirSettings:
     """Settings of a scenario whose head is of the log's kind."""
-    scenario, kind = settings.scenario, "differential" if head.differential else "absolute"
+    scenario = settings.scenario
+    kind: Literal["absolute", "differential"] = "differential" if head.differential else "absolute"
     if scenario.air_data.kind == kind:
         return settings
     return replace(settings, scenario=replace(scenario, air_data=replace(scenario.air_data, kind=kind)))
@@ -242,27 +248,28 @@ def _share(readings: Array, head: Head) -> bool:
     return bool(head.total.t[0] < readings[-1, 0] and head.total.t[-1] > readings[0, 0])
 
 
-def cut(recording: Recording, stretches: list[Stretch], launches: list[float], settings: AirSettings) -> list[Span]:
+def cut(recording: Recording, rests: Rests, launches: list[float], settings: AirSettings) -> list[Span]:
     """Cut a log into flights where the aircraft stands still, and find each one's tare."""
     first, last = recording.span
-    rests = [stretch for stretch in stretches if stretch.length >= BETWEEN and stretch.start > first + BETWEEN]
+    between = [rest for rest in rests.still if rest.length >= BETWEEN and rest.start > first + BETWEEN]
     edges = [first]
-    for rest in rests:
+    for rest in between:
         after = [at for at in launches if at > rest.start]
         if after and any(edges[-1] <= at < rest.start for at in launches):
             edges.append(max(rest.start, min(rest.end, after[0]) - KEPT))
     edges.append(inf)
     spans = []
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
+    for start, end in pairwise(edges):
         launch = next((at for at in launches if start <= at < end), None)
-        spans.append(Span(start, min(end, last + 1.0), launch, _tare(stretches, start, end, launch, settings)))
+        spans.append(Span(start, min(end, last + 1.0), launch, _tare(rests, start, end, launch, settings)))
     return spans
 
 
-def _tare(
-    stretches: list[Stretch], start: float, end: float, launch: float | None, settings: AirSettings
-) -> TareWindow | None:
-    """When the pair is tared: as it is said, or in the last seconds of rest before the launch."""
+def _tare(rests: Rests, start: float, end: float, launch: float | None, settings: AirSettings) -> TareWindow | None:
+    """When the pair is tared: as it is said, or in the last seconds of rest before the launch.
+
+    Where the aircraft is never still before its launch, as in a hand, it is enough that its head is in still air.
+    """
     air, named = settings.scenario.air_data, settings.named
     if air.tare == "none" and "air_data.tare" in named:
         return None
@@ -271,12 +278,13 @@ def _tare(
     if launch is not None and {"air_data.cover_off", "air_data.tare_duration"} & set(named):
         return launch - lead - longest, launch - lead
     before = end if launch is None else launch - lead
-    rests = [stretch for stretch in stretches if stretch.end > start and min(stretch.end, before) - stretch.start >= LEAST_TARE]
-    if not rests:
-        return None
-    rest = rests[-1] if launch is not None else rests[0]
-    over = min(rest.end, before)
-    return max(rest.start, start, over - longest), over
+    for stretches in (rests.still, rests.calm):
+        usable = [rest for rest in stretches if rest.end > start and min(rest.end, before) - rest.start >= LEAST_TARE]
+        if usable:
+            rest = usable[0] if launch is None else usable[-1]
+            over = min(rest.end, before)
+            return max(rest.start, start, over - longest), over
+    return None
 
 
 def _tared(span: Span, *, covered: bool) -> str:

@@ -17,7 +17,7 @@ from uavsim.beliefs import believed_air, believed_flow, believed_noise
 from uavsim.cosim import Believed
 from uavsim.logs.gusts import gust_of
 from uavsim.logs.head import Head
-from uavsim.logs.quiet import Stretch, noise_at_rest, noise_throughout, step_of, walk_at_rest
+from uavsim.logs.quiet import AVERAGED, Stretch, noise_at_rest, noise_throughout, step_of
 from uavsim.logs.recording import Recording
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.head_errors import HeadErrors
@@ -36,7 +36,7 @@ WARMTH, BOARD = 10.0, 5.0  # K: of a temperature that is assumed; of one that is
 ABSOLUTE_PAIR, ONE_SENSOR = 60.0, 30.0  # Pa: two barometers that nobody has tared; a differential sensor
 STATIC_OFFSET = 200.0  # Pa: 17 m, a barometer's absolute accuracy
 HEIGHT_OFFSET = 5000.0  # Pa: 400 m, where a height is above a field that nobody has named
-WALK = 0.05  # Pa/√s, of a pair's difference, the least: 0.5 Pa in a hundred seconds
+WALK = 0.05  # Pa/√s, of the difference: 0.5 Pa in a hundred seconds. A log's rest cannot tell it from wind
 GUST = 1.0  # m/s, of turbulence that nobody has declared and that the log does not show: σ_u of a moderate wind
 OPEN_WIND = 3.0  # m/s, in which an open head may be tared: a gentle breeze
 LEAST_SD = 0.3  # Pa: no part of a UAV is quieter by more than a filter that hides it
@@ -70,8 +70,8 @@ def parse_noise(text: str) -> Noise:
             number = -inf
         if not sign or name not in NAMES or not 0.0 < number <= MOST_NOISE:
             raise ValueError(
-                f"{part.strip()[:40]!r}: give it as NAME=SD,… in our units, NAME one of {listed(list(NAMES))} and SD the "
-                f"standard deviation of a reading, above 0 and up to {MOST_NOISE:g}"
+                f"{part.strip()[:40]!r}: give it as NAME=SD,… in our units, NAME one of {listed(list(NAMES))} and SD "
+                f"the standard deviation of a reading, above 0 and up to {MOST_NOISE:g}"
             )
         found[NAMES[name]] = number
     return Noise(**found)
@@ -113,7 +113,13 @@ def believed_of_log(
         When the pair is tared, s.
     """
     of_parts, ours = believed_noise(scenario), _from_log(recording, head, stretches)
-    where = f"{len(stretches)} quiet stretches" if len(stretches) > 1 else "its quiet stretch" if stretches else "its flight"
+    where = (
+        f"{len(stretches)} quiet stretches"
+        if len(stretches) > 1
+        else "its quiet stretch"
+        if stretches
+        else "its flight"
+    )
     fields: dict[str, object] = {}
     said = []
     for part, names, keys in _PARTS:
@@ -196,20 +202,20 @@ def _part(scenario: Scenario, sensor: str) -> str:
 def _from_log(recording: Recording, head: Head, stretches: list[Stretch]) -> NoiseModel:
     """What the log itself shows, and what is usual where it does not."""
     at_rest = [noise_at_rest(channel, stretches) or 0.0 for channel in (head.total, head.static)]
+    in_flight = noise_throughout(head.total), noise_throughout(head.static, AVERAGED)
     total, static = (
-        max(LEAST_SD, rest, noise_throughout(channel), step_of(channel) / 12.0**0.5)
-        for rest, channel in zip(at_rest, (head.total, head.static), strict=True)
+        max(LEAST_SD, rest, flying, step_of(channel) / 12.0**0.5)
+        for rest, flying, channel in zip(at_rest, in_flight, (head.total, head.static), strict=True)
     )
     made_height = "baro_height" in head.made
     force = _force_noise(recording)
-    walk = max(WALK, walk_at_rest(head.total, stretches) if head.differential else WALK)
     clipped = [abs(one.level) for one in recording.clipping() if one.axis == "fx"]
     ends = min(clipped, default=inf)
     return NoiseModel(
         total_sd=total,
         static_sd=static,
         temperature_sd=WARMTH if head.temperature is None else BOARD,
-        walk=walk,
+        walk=WALK,
         accelerometer_sd=max(LEAST_FORCE_SD, force),
         accelerometer_scale_sd=ACCELEROMETER_SCALE,
         accelerometer_offset_sd=ACCELEROMETER_OFFSET,

@@ -139,7 +139,11 @@ def head_of(series: Mapping[str, Series]) -> Head | None:
     warm = found.get("temperature")
     head = Head(total, static, _sane(warm), total.name != "p_total", tuple(made), tuple(said))
     if head.temperature is None:
-        why = "no temperature" if warm is None else "the temperature is not one of air in K (°C: map temperature=…+273.15)"
+        why = (
+            "no temperature"
+            if warm is None
+            else "the temperature is not one of air in K (°C: map temperature=…+273.15)"
+        )
         assumed = f"{why}: that of the standard atmosphere is assumed, {head.assumed_temperature - 273.15:.1f} °C ± 10"
         head = Head(head.total, head.static, None, head.differential, head.made, (*head.remarks, assumed))
     return head
@@ -148,6 +152,8 @@ def head_of(series: Mapping[str, Series]) -> Head | None:
 def lacking(series: Mapping[str, Series]) -> str | None:
     """Say what a log with some pressures lacks for an airspeed; None if it has none at all, or enough."""
     total = [name for name in ("p_total", "p_difference", "equivalent_airspeed") if name in series]
+    if not total and "p_static" in series:
+        return "a static pressure alone makes no airspeed: map p_total=… or p_difference=… if the log has one"
     if not total or head_of(series) is not None:
         return None
     few = [name for name in (*total, "p_static", "baro_height") if name in series and _channel(series[name]) is None]
@@ -186,5 +192,7 @@ def _of_height(height: Channel) -> Channel:
 def _of_equivalent(speed: Channel, static: Channel) -> Channel:
     p = static.at(speed.t)
     p = np.where(np.isfinite(p), p, static.values[0])
-    mach = np.clip(speed.values, 0.0, FASTEST) / (airdata.STANDARD_SPEED_OF_SOUND * np.sqrt(p / airdata.STANDARD_PRESSURE))
+    mach = np.clip(speed.values, 0.0, FASTEST) / (
+        airdata.STANDARD_SPEED_OF_SOUND * np.sqrt(p / airdata.STANDARD_PRESSURE)
+    )
     return Channel("p_difference", speed.t, p * np.expm1(3.5 * np.log1p(0.2 * mach**2)), speed.source)

@@ -10,7 +10,7 @@ asked for. Turbulence, a wind that changes and sideslip are in the residuals, wh
 standard deviation of c is that of a jackknife over blocks.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
 
@@ -21,6 +21,9 @@ from uavsim.logs.recording import Array, Series
 TURNS = 2.0  # full turns, of which fewer tell no wind
 BLOCK = 20.0  # s of a block, longer than a circle of a small aircraft. By hand
 FEWEST = 50  # moments
+Known = tuple[Array, ...]
+Residuals = Callable[[Array, Known], Array]
+
 PACE = 0.2  # s between two moments: what receivers give
 STALE = 1.0  # s, how far a reading may be from a moment
 SMOOTH = 5  # moments, over which a track is averaged before its turns are counted
@@ -136,7 +139,7 @@ def _of_speed(x: Array, known: tuple[Array, ...]) -> Array:
     return np.asarray(ground - np.hypot(flat * np.cos(heading) + x[0], flat * np.sin(heading) + x[1]))
 
 
-def _fit(residuals: "object", known: tuple[Array, ...], start: Array | None = None) -> Array:
+def _fit(residuals: Residuals, known: tuple[Array, ...], start: Array | None = None) -> Array:
     from scipy.optimize import least_squares  # late: a log without a receiver does not need it
 
     first = np.zeros(3) if start is None else start

@@ -15,6 +15,7 @@ import numpy as np
 
 from uavsim.logs.head import Channel, Head
 from uavsim.logs.recording import Array
+from uavsim.truth import STANDARD_GRAVITY
 
 BLOCK = 0.25  # s of a mean: half of that on the rail (`uavsim.onboard.rail_offset`), for a log may begin late
 SHAKES = 2.0  # m/s² rms within a block, up to which an aircraft stands still: a motor that runs while waiting
@@ -22,6 +23,10 @@ TURNS = 0.25  # m/s² by which means of blocks may differ: 1.5° of tilt. By han
 LEAST = 4  # blocks in a row that make a stretch
 NEAR = 0.2  # of the way from the least to the greatest pressure difference, up to which it is one of rest. By hand
 CALM = 40.0  # Pa: ½ρw² of 8 m/s, which a head at rest may see whatever the flight was
+# times the least difference, at least `FAINT` Pa, that the greatest must be to show that the log has both rest and
+# flight; else only a difference below `CALM` is one of rest. By hand: a flight of 10 to 17 m/s has 2.9
+CONTRAST, FAINT = 3.0, 20.0
+CARRIED = (0.7, 1.3)  # g, of the mean force of an aircraft that is carried about
 LONGEST = 60.0  # s of a stretch that are looked at for noise
 AVERAGED = 0.25  # s, of the longest means
 ROBUST = 1.4826  # sd of a Gaussian over its median absolute deviation
@@ -36,16 +41,32 @@ class Stretch:
 
     @property
     def length(self) -> float:
-        """s."""
+        """How long it is, s."""
         return self.end - self.start
 
 
-def quiet(readings: Array, head: Head) -> list[Stretch]:
-    """Return the stretches in which the aircraft stands still, in their order."""
+@dataclass(frozen=True, slots=True)
+class Rests:
+    """Stretches of a log at rest, in their order.
+
+    Attributes
+    ----------
+    still : list of Stretch
+        In which the aircraft stands still.
+    calm : list of Stretch
+        In which its head is in still air, whoever carries it.
+    """
+
+    still: list[Stretch]
+    calm: list[Stretch]
+
+
+def rests_of(readings: Array, head: Head) -> Rests:
+    """Find where a log's aircraft is at rest."""
     t, force = readings[:, 0], readings[:, 1:]
     edges = np.arange(t[0], t[-1], BLOCK)
     if edges.size <= LEAST:
-        return []
+        return Rests([], [])
     mean, spread = _blocks(t, force, edges)
     moved = np.full(edges.size, inf)
     moved[1:] = np.max(np.abs(np.diff(mean, axis=0)), axis=1)
@@ -54,13 +75,21 @@ def quiet(readings: Array, head: Head) -> list[Stretch]:
     differences = apart[:, 0]
     known = np.isfinite(differences)
     if not known.any():
-        return []
+        return Rests([], [])
     low, high = np.percentile(differences[known], (2.0, 95.0))
-    still = (np.max(spread, axis=1) <= SHAKES) & (moved <= TURNS) & (differences <= low + max(CALM, NEAR * (high - low)))
+    both = high > CONTRAST * max(low, FAINT)
+    size = np.linalg.norm(mean, axis=1) / STANDARD_GRAVITY
+    calm = differences <= (low + max(CALM, NEAR * (high - low)) if both else CALM)
+    still = calm & (np.max(spread, axis=1) <= SHAKES) & (moved <= TURNS)
     still[:-1] &= moved[1:] <= TURNS
-    return [
-        Stretch(float(edges[a]), float(edges[b - 1] + BLOCK)) for a, b in _runs(still) if b - a >= LEAST
-    ]
+    carried = calm & (size > CARRIED[0]) & (size < CARRIED[1])
+    return Rests(
+        *([_stretch(edges, *run) for run in _runs(rows) if run[1] - run[0] >= LEAST] for rows in (still, carried))
+    )
+
+
+def _stretch(edges: Array, first: int, after: int) -> Stretch:
+    return Stretch(float(edges[first]), float(edges[after - 1] + BLOCK))
 
 
 def _blocks(t: Array, values: Array, edges: Array) -> tuple[Array, Array]:
@@ -99,24 +128,20 @@ def noise_at_rest(channel: Channel, stretches: list[Stretch]) -> float | None:
     return sqrt(float(np.max(sums[enough] / counts[enough]))) if enough.any() else None
 
 
-def noise_throughout(channel: Channel) -> float:
-    """Standard deviation of one reading by its second differences, wherever the aircraft is."""
-    bends = np.diff(channel.values, 2)
-    return ROBUST * float(np.median(np.abs(bends))) / sqrt(6.0) if bends.size else 0.0
+def noise_throughout(channel: Channel, averaged: float = 0.0) -> float:
+    """The same by second differences of means, wherever the aircraft is; means of up to `averaged`, s.
 
-
-def walk_at_rest(channel: Channel, stretches: list[Stretch]) -> float:
-    """How fast means of a second wander, per √s: what is more than their noise; 0 without enough of them."""
-    found = []
-    for stretch in stretches:
-        edges = np.arange(stretch.start, stretch.end, 1.0)
-        if edges.size >= 8:
-            mean, _ = _blocks(channel.t, channel.values[:, None], edges)
-            steps = mean[:, 0]
-            steps = steps[np.isfinite(steps)]
-            near, far = (float(np.mean((steps[k:] - steps[:-k]) ** 2)) for k in (1, 4))
-            found.append(max(0.0, far - near) / 3.0)
-    return sqrt(float(np.median(found))) if found else 0.0
+    Second differences do not see a ramp (Hadamard's variance in place of Allan's), and the median of their squares not
+    what happens now and then. Of a channel that itself wanders, as the total pressure in turbulence, single readings
+    say more of the sensor than means.
+    """
+    found = 0.0
+    for m in range(1, max(1, int(averaged / channel.period)) + 1):
+        means = channel.values[: channel.values.size // m * m].reshape(-1, m).mean(axis=1)
+        bends = np.diff(means, 2)
+        if bends.size >= 8:
+            found = max(found, ROBUST * float(np.median(np.abs(bends))) * sqrt(m / 6.0))
+    return found
 
 
 def step_of(channel: Channel) -> float:

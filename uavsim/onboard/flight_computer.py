@@ -291,7 +291,7 @@ class FlightComputer:
         """Be told that the aircraft is in flight at `t`, s, without a launch that was recognised."""
         if self.state == "waiting":
             self._note(t, "in_flight")
-            self.estimator.launched(t)
+            self.estimator.airborne(t)
             self.state, self._last_estimate = "flying", t
 
     # -- launch ------------------------------------------------------------------------------------------------------

@@ -48,7 +48,7 @@ def lines(flight: "Flight") -> list[str]:
     if ground is not None:
         said.append(
             f"over ground, {ground['turns']:.1f} turns: the airspeed is {_off(ground['difference'])} by "
-            f"{abs(ground['difference']):.2f} ± {ground['sd']:.2f} m/s, its own bar is ± {ground['claimed']:.2f} (1 sd); the "
+            f"{abs(ground['difference']):.2f} ± {ground['sd']:.2f} m/s, its own bar ± {ground['claimed']:.2f} (1 sd); the "
             f"wind moves {ground['wind_north']:+.1f} north, {ground['wind_east']:+.1f} east"
         )
     return said + _flags(flight.events)
@@ -60,7 +60,9 @@ def _off(difference: float) -> str:
 
 def _flags(events: list[dict[str, Any]]) -> list[str]:
     flags = [event for event in events if event["event"] == "airspeed_fault"]
-    told = [f"flag: {event['channel']} port {event.get('kind', '')} at {event['t']:.2f} s" for event in flags[:MOST_FLAGS]]
+    told = [
+        f"flag: {event['channel']} port {event.get('kind', '')} at {event['t']:.2f} s" for event in flags[:MOST_FLAGS]
+    ]
     return [*told, f"… and {len(flags) - MOST_FLAGS} more flags"] if len(flags) > MOST_FLAGS else told
 
 
@@ -87,7 +89,11 @@ def draw(flight: "Flight") -> "Figure | None":
     colours = {"launch_detected": RED, "in_flight": BLACK, "airspeed_fault": BLUE, "airspeed_recovered": GREY}
     words = {"launch_detected": "detected", "in_flight": "in flight", "airspeed_recovered": "taken back"}
     marks = [
-        Mark(event["t"], words.get(event["event"], f"{event.get('channel', '')} {event.get('kind', '')}"), colours[event["event"]])
+        Mark(
+            event["t"],
+            words.get(event["event"], f"{event.get('channel', '')} {event.get('kind', '')}"),
+            colours[event["event"]],
+        )
         for event in flight.events
         if event["event"] in colours
     ]
@@ -109,7 +115,13 @@ def _has_reference(flight: "Flight") -> bool:
 def _speeds(axes: "Axes", flight: "Flight", stretch: Stretch) -> None:
     t, speed, sd, raw = _columns(flight, stretch, "airspeed", "airspeed_sd", "airspeed_raw")
     axes.fill_between(
-        t, np.maximum(speed - TWO * sd, 0.0), speed + TWO * sd, color=BLUE, alpha=0.22, linewidth=0.0, label="estimate ± 1.96 sd"
+        t,
+        np.maximum(speed - TWO * sd, 0.0),
+        speed + TWO * sd,
+        color=BLUE,
+        alpha=0.22,
+        linewidth=0.0,
+        label="estimate ± 1.96 sd",
     )
     axes.plot(*thin(t, raw), color=LIGHT, linewidth=0.8, label="pressures alone", zorder=1)
     axes.plot(*thin(t, speed), color=BLUE, linewidth=1.2, label="estimate")
@@ -134,4 +146,6 @@ def _below(axes: "Axes", flight: "Flight", stretch: Stretch) -> None:
 
 def _columns(flight: "Flight", stretch: Stretch, *names: str) -> list[Array]:
     table = flight.estimate
-    return list(within(stretch, table["t"].to_numpy(dtype=float), *(table[name].to_numpy(dtype=float) for name in names)))
+    return list(
+        within(stretch, table["t"].to_numpy(dtype=float), *(table[name].to_numpy(dtype=float) for name in names))
+    )

@@ -399,6 +399,13 @@ class AidedFilter(Estimator):
             self._fall_back(t, "diverged")
         self._rows.clear()
 
+    def airborne(self, t: float) -> None:
+        """Begin in flight: V by the next total pressure, climb and bias not known."""
+        if not self.flying and -LATEST < t < LATEST:
+            self._gated = inf
+            self._gained.bound(self._flight_force)
+            self._begin_aloft(t - OLDEST, t)
+
     def throttle(self, t: float, value: float) -> None:
         """Know what the propeller blows with."""
         self._throttle = value
