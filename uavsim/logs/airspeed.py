@@ -10,7 +10,7 @@ The launch is the one that the detector has found. Where none is found, as of a 
 a log that begins in the air, the aircraft flies from when on its pressures alone have told a valid airspeed of
 `FLIES` for `HOLDS`; it is told so (`FlightComputer.airborne`), and the log has the event ``in_flight``.
 
-The tare is the mean over the last seconds at rest before a launch, in the open, unless it is said otherwise.
+The pair is tared at rest before a launch (`taring`), unless it is said otherwise.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,8 @@ from uavsim.logs.clocks import Delay, delay_of
 from uavsim.logs.head import Head, head_of, lacking
 from uavsim.logs.quiet import Rests, rests_of
 from uavsim.logs.recording import Array, Recording
-from uavsim.onboard.interface import AirReading, Estimate, Reading, TareWindow
+from uavsim.logs.taring import Tared, tared
+from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.scenario import Scenario, load_scenario
 
 FLIES, HOLDS = (
@@ -36,9 +37,6 @@ FLIES, HOLDS = (
     3.0,
 )  # m/s and s: no fixed wing flies slower, no gust and no breath into a pitot lasts so long. By hand
 BETWEEN = 5.0  # s at rest that part two flights. By hand
-LEAD = 0.5  # s before a recognised launch at which its tare ends, unless air_data.cover_off says when
-TARED = 10.0  # s of rest that are averaged at the most, unless air_data.tare_duration says how many
-LEAST_TARE = 0.5  # s
 KEPT = 60.0  # s of rest before a launch that are replayed; a flight computer has nothing from an hour of standing about
 
 
@@ -84,7 +82,7 @@ class Span:
     start: float
     end: float
     launch: float | None
-    tare: TareWindow | None
+    tare: Tared | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -150,7 +148,7 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
             f"{recording.span[0]:.3f} to {recording.span[1]:.3f} s share no time, and no launch shows in both"
         )
     rests = rests_of(recording.readings, head)
-    spans = cut(recording, rests, launches, settings)
+    spans = cut(recording, head, rests, launches, settings)
     belief = believed_of_log(
         recording,
         head,
@@ -158,7 +156,7 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
         named=settings.named,
         noise=settings.noise,
         stretches=rests.still,
-        tare=spans[0].tare,
+        rests=bool(rests.still or rests.calm),
     )
     said += belief.said
     rows = head.rows()
@@ -166,8 +164,10 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
     events: list[dict[str, object]] = []
     reason = ""
     for span in spans:
-        told = replace(belief.told, tare=span.tare)
-        said.append(_tared(span, covered=told.noise.covered))
+        said.append(_told_of(span))
+        told = belief.told
+        if span.tare is not None:
+            told = replace(told, tare=span.tare.window, noise=replace(told.noise, covered=span.tare.still))
         onboard = OfLog(settings.scenario, told, Recognised([at for at in launches if span.start <= at < span.end]))
         try:
             onboard.read(_readings(recording.readings, span), _readings(rows, span))  # type: ignore[arg-type]
@@ -248,7 +248,9 @@ def _share(readings: Array, head: Head) -> bool:
     return bool(head.total.t[0] < readings[-1, 0] and head.total.t[-1] > readings[0, 0])
 
 
-def cut(recording: Recording, rests: Rests, launches: list[float], settings: AirSettings) -> list[Span]:
+def cut(
+    recording: Recording, head: Head, rests: Rests, launches: list[float], settings: AirSettings
+) -> list[Span]:
     """Cut a log into flights where the aircraft stands still, and find each one's tare."""
     first, last = recording.span
     between = [rest for rest in rests.still if rest.length >= BETWEEN and rest.start > first + BETWEEN]
@@ -261,38 +263,18 @@ def cut(recording: Recording, rests: Rests, launches: list[float], settings: Air
     spans = []
     for start, end in pairwise(edges):
         launch = next((at for at in launches if start <= at < end), None)
-        spans.append(Span(start, min(end, last + 1.0), launch, _tare(rests, start, end, launch, settings)))
+        tare = tared(head, rests, start, end, launch, settings.scenario, settings.named)
+        spans.append(Span(start, min(end, last + 1.0), launch, tare))
     return spans
 
 
-def _tare(rests: Rests, start: float, end: float, launch: float | None, settings: AirSettings) -> TareWindow | None:
-    """When the pair is tared: as it is said, or in the last seconds of rest before the launch.
-
-    Where the aircraft is never still before its launch, as in a hand, it is enough that its head is in still air.
-    """
-    air, named = settings.scenario.air_data, settings.named
-    if air.tare == "none" and "air_data.tare" in named:
-        return None
-    lead = air.cover_off if "air_data.cover_off" in named else LEAD
-    longest = air.tare_duration if "air_data.tare_duration" in named else TARED
-    if launch is not None and {"air_data.cover_off", "air_data.tare_duration"} & set(named):
-        return launch - lead - longest, launch - lead
-    before = end if launch is None else launch - lead
-    for stretches in (rests.still, rests.calm):
-        usable = [rest for rest in stretches if rest.end > start and min(rest.end, before) - rest.start >= LEAST_TARE]
-        if usable:
-            rest = usable[0] if launch is None else usable[-1]
-            over = min(rest.end, before)
-            return max(rest.start, start, over - longest), over
-    return None
-
-
-def _tared(span: Span, *, covered: bool) -> str:
+def _told_of(span: Span) -> str:
     what = "no launch recognised" if span.launch is None else f"launch at {span.launch:.3f} s"
     if span.tare is None:
         return f"{what}: the pair is not tared, for the log has no rest before"
-    how = "under a cover" if covered else "in the open"
-    return f"{what}: tared {how} from {span.tare[0]:.2f} to {span.tare[1]:.2f} s"
+    start, end = span.tare.window
+    how = ("under a cover" if span.tare.told else "in still air") if span.tare.still else "in the open"
+    return f"{what}: tared {how} from {start:.2f} to {end:.2f} s"
 
 
 def _readings(rows: Array, span: Span) -> list[Reading] | list[AirReading]:

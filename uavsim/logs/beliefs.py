@@ -13,15 +13,15 @@ import numpy as np
 
 from sensors import known_of_head
 from sensors.bench_log import listed
+from uavsim import airdata
 from uavsim.beliefs import believed_air, believed_flow, believed_noise
 from uavsim.cosim import Believed
 from uavsim.logs.gusts import gust_of
-from uavsim.logs.head import Head
-from uavsim.logs.quiet import AVERAGED, Stretch, noise_at_rest, noise_throughout, step_of
+from uavsim.logs.head import Channel, Head
+from uavsim.logs.quiet import AVERAGED, Stretch, as_white, noise_at_rest, noise_throughout, step_of
 from uavsim.logs.recording import Recording
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.head_errors import HeadErrors
-from uavsim.onboard.interface import TareWindow
 from uavsim.onboard.plausible import FASTEST
 from uavsim.scenario import Scenario
 
@@ -38,8 +38,10 @@ STATIC_OFFSET = 200.0  # Pa: 17 m, a barometer's absolute accuracy
 HEIGHT_OFFSET = 5000.0  # Pa: 400 m, where a height is above a field that nobody has named
 WALK = 0.05  # Pa/√s, of the difference: 0.5 Pa in a hundred seconds. A log's rest cannot tell it from wind
 GUST = 1.0  # m/s, of turbulence that nobody has declared and that the log does not show: σ_u of a moderate wind
-OPEN_WIND = 3.0  # m/s, in which an open head may be tared: a gentle breeze
+OPEN_WIND = 3.0  # m/s, in which aircraft are launched, where nobody has declared one: a gentle breeze
+STATIC_NEAR = 60.0  # Pa, 5 m: so near to its lowest place an aircraft hardly flies
 LEAST_SD = 0.3  # Pa: no part of a UAV is quieter by more than a filter that hides it
+SHAKEN = 0.05  # s, of means of a shaken force: longer ones hold what the aircraft does
 LEAST_FORCE_SD = 0.3  # m/s²: what the model is off by at this rate
 
 
@@ -93,7 +95,7 @@ def believed_of_log(
     named: Sequence[str],
     noise: Noise,
     stretches: list[Stretch],
-    tare: TareWindow | None,
+    rests: bool,
 ) -> Sourced:
     """What the onboard code believes of a log's sensors.
 
@@ -109,8 +111,8 @@ def believed_of_log(
         What the user says of it.
     stretches
         In which the aircraft stands still.
-    tare
-        When the pair is tared, s.
+    rests
+        Whether the log has any rest, so that the height above it is known.
     """
     of_parts, ours = believed_noise(scenario), _from_log(recording, head, stretches)
     where = (
@@ -145,7 +147,6 @@ def believed_of_log(
         "rail_elevation": None if elevation is None else of_parts.rail_elevation,
         "rail_elevation_sd": of_parts.rail_elevation_sd,
         "rail_roll": of_parts.rail_roll,
-        "covered": scenario.air_data.tare == "covered" and "air_data.tare" in named,
         "total_tuned_sd": None,
         "static_tuned_sd": None,
     }
@@ -153,8 +154,8 @@ def believed_of_log(
     flow = believed_flow(scenario) if head.differential and "total" in both else None
     length = scenario.estimator.aided.gust_length
     gust = gust_of(head, recording.readings, model, zero=_zero(head, stretches), length=length)
-    air, of_air = _air(scenario, named, tare, model, gust)
-    told = Believed(recording.rate, model, air, tare, flow)
+    air, of_air = _air(scenario, named, gust, _height(head) if rests else 0.0)
+    told = Believed(recording.rate, model, air, None, flow)
     numbers = (
         f"one reading has {model.total_sd:.2g} Pa ({'difference' if head.differential else 'total pressure'}), "
         f"{model.static_sd:.2g} Pa (static), {model.temperature_sd:.2g} K, {model.accelerometer_sd:.2g} m/s²"
@@ -201,10 +202,10 @@ def _part(scenario: Scenario, sensor: str) -> str:
 
 def _from_log(recording: Recording, head: Head, stretches: list[Stretch]) -> NoiseModel:
     """What the log itself shows, and what is usual where it does not."""
-    at_rest = [noise_at_rest(channel, stretches) or 0.0 for channel in (head.total, head.static)]
+    at_rest = [noise_at_rest(channel, stretches) for channel in (head.total, head.static)]
     in_flight = noise_throughout(head.total), noise_throughout(head.static, AVERAGED)
     total, static = (
-        max(LEAST_SD, rest, flying, step_of(channel) / 12.0**0.5)
+        max(LEAST_SD, as_white([flying] if rest is None else [rest, flying]), step_of(channel) / 12.0**0.5)
         for rest, flying, channel in zip(at_rest, in_flight, (head.total, head.static), strict=True)
     )
     made_height = "baro_height" in head.made
@@ -238,16 +239,10 @@ def _from_log(recording: Recording, head: Head, stretches: list[Stretch]) -> Noi
 
 
 def _force_noise(recording: Recording) -> float:
-    """Standard deviation of a reading of f_x in flight, vibration included, by its differences, m/s².
-
-    It is that of a busy second of the log: the one that three in four do not exceed.
-    """
-    f = recording.readings[:, 1]
-    squares = np.diff(f[np.isfinite(f)]) ** 2 / 2.0
-    size = max(1, round(recording.rate))
-    if squares.size < size:
-        return sqrt(float(squares.mean())) if squares.size else 0.0
-    return sqrt(float(np.percentile(squares[: squares.size // size * size].reshape(-1, size).mean(axis=1), 75.0)))
+    """Standard deviation of a reading of f_x as white noise, vibration included, by the log as a whole, m/s²."""
+    t, force = recording.readings[:, 0], recording.readings[:, 1]
+    good = np.isfinite(force)
+    return noise_throughout(Channel("fx", t[good], force[good], ""), SHAKEN)
 
 
 def _zero(head: Head, stretches: list[Stretch]) -> float:
@@ -259,8 +254,18 @@ def _zero(head: Head, stretches: list[Stretch]) -> float:
     return float(np.median(values)) if values.size else 0.0
 
 
+def _height(head: Head) -> float:
+    """Median height of the log's flight above its lowest place, m; 0 where it hardly leaves that."""
+    pressure = head.static.values
+    ground = float(np.percentile(pressure, 98.0))
+    above = pressure[pressure < ground - STATIC_NEAR]
+    if above.size < 0.1 * pressure.size:
+        return 0.0
+    return float(airdata.hypsometric_height(float(np.median(above)), ground, head.assumed_temperature))
+
+
 def _air(
-    scenario: Scenario, named: Sequence[str], tare: TareWindow | None, noise: NoiseModel, gust: float | None
+    scenario: Scenario, named: Sequence[str], gust: float | None, height: float
 ) -> tuple[EstimatorSettings, str]:
     """What is believed of air and aircraft, and where that is from: unless it is declared, what the log shows."""
     settings = believed_air(scenario)
@@ -272,8 +277,7 @@ def _air(
         usual["gust_sd"] = max(settings.aided.gust_floor, GUST if gust is None else gust)
         by = "a moderate wind's is assumed" if gust is None else "by the log's flight"
         said = f"turbulence along the path {by}: {usual['gust_sd']:.2f} m/s"
-        if tare is not None and not noise.covered:
-            usual["rail_wind_sd"] = OPEN_WIND
+        usual |= {"gust_height": height, "rail_wind_sd": OPEN_WIND}
     aided = replace(settings.aided, **{name: value for name, value in usual.items() if name not in given})  # type: ignore[arg-type]
     fastest = settings.fastest if "estimator.fastest" in named else FASTEST
     return replace(settings, aided=aided, fastest=fastest), said

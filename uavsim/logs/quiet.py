@@ -29,6 +29,9 @@ CONTRAST, FAINT = 3.0, 20.0
 CARRIED = (0.7, 1.3)  # g, of the mean force of an aircraft that is carried about
 LONGEST = 60.0  # s of a stretch that are looked at for noise
 AVERAGED = 0.25  # s, of the longest means
+SECOND, FEW = 1.0, 4  # s over which noise is judged, and means in it at the least
+COLOURED = 1.4  # times as much as single readings show, from which on noise is coloured. By hand
+BEYOND = 3.0  # standard deviations, to which a second difference is cut: 1 % less of Gaussian noise
 ROBUST = 1.4826  # sd of a Gaussian over its median absolute deviation
 
 
@@ -113,35 +116,53 @@ def _runs(flags: Array) -> list[tuple[int, int]]:
 
 
 def noise_at_rest(channel: Channel, stretches: list[Stretch]) -> float | None:
-    """Standard deviation of one reading as white noise, by what is averaged of it; None without enough readings."""
-    most = max(1, int(AVERAGED / channel.period))
-    sums, counts = np.zeros(most), np.zeros(most)
+    """Standard deviation of one reading as white noise, by what is averaged of it; None without enough readings.
+
+    It is that of a calm second: one in four is calmer. What wind makes of a head at rest is none of its noise.
+    """
+    found: list[list[float]] = [[] for _ in _means(channel, AVERAGED)]
     for stretch in stretches:
-        inside = (channel.t >= stretch.start) & (channel.t <= min(stretch.end, stretch.start + LONGEST))
-        values = channel.values[inside]
-        for m in range(1, most + 1):
-            if values.size >= 4 * m:
-                means = values[: values.size // m * m].reshape(-1, m).mean(axis=1)
-                sums[m - 1] += m * float(np.sum(np.diff(means) ** 2)) / 2.0
-                counts[m - 1] += means.size - 1
-    enough = counts >= 8
-    return sqrt(float(np.max(sums[enough] / counts[enough]))) if enough.any() else None
+        last = min(stretch.end, stretch.start + LONGEST)
+        for start in np.arange(stretch.start, last - 0.5 * SECOND, SECOND):
+            first, after = np.searchsorted(channel.t, (start, min(start + SECOND, last)))
+            for variances, m in zip(found, _means(channel, AVERAGED), strict=True):
+                if after - first >= FEW * m:
+                    variances.append(_allan(channel.values[first:after], m))
+    return as_white([sqrt(float(np.percentile(of_one, 25.0))) for of_one in found if of_one]) if found[0] else None
 
 
 def noise_throughout(channel: Channel, averaged: float = 0.0) -> float:
     """The same by second differences of means, wherever the aircraft is; means of up to `averaged`, s.
 
-    Second differences do not see a ramp (Hadamard's variance in place of Allan's), and the median of their squares not
-    what happens now and then. Of a channel that itself wanders, as the total pressure in turbulence, single readings
-    say more of the sensor than means.
+    Second differences do not see a ramp (Hadamard's variance in place of Allan's), and those that are far beyond the
+    usual count as if they were not. Of a channel that itself wanders, as the total pressure in turbulence, single
+    readings say more of the sensor than means.
     """
-    found = 0.0
-    for m in range(1, max(1, int(averaged / channel.period)) + 1):
+    found = []
+    for m in _means(channel, averaged):
         means = channel.values[: channel.values.size // m * m].reshape(-1, m).mean(axis=1)
-        bends = np.diff(means, 2)
+        bends = np.abs(np.diff(means, 2))
         if bends.size >= 8:
-            found = max(found, ROBUST * float(np.median(np.abs(bends))) * sqrt(m / 6.0))
-    return found
+            usual = np.minimum(bends, BEYOND * ROBUST * float(np.median(bends)) or np.inf)
+            found.append(sqrt(m / 6.0 * float(np.mean(usual**2))))
+    return as_white(found) if found else 0.0
+
+
+def _means(channel: Channel, averaged: float) -> list[int]:
+    """How many readings the means have, by powers of two up to a time, s."""
+    most = max(1, int(averaged / channel.period))
+    return [2**k for k in range(most.bit_length())]
+
+
+def as_white(found: list[float]) -> float:
+    """The first of several estimates of the same noise, unless others show more than chance makes of it."""
+    return max(found) if max(found) > COLOURED * found[0] else found[0]
+
+
+def _allan(values: Array, m: int) -> float:
+    """Allan variance of means of m readings, times m: of white noise that of one reading."""
+    means = values[: values.size // m * m].reshape(-1, m).mean(axis=1)
+    return m * float(np.mean(np.diff(means) ** 2)) / 2.0
 
 
 def step_of(channel: Channel) -> float:

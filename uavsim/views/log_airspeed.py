@@ -48,8 +48,8 @@ def lines(flight: "Flight") -> list[str]:
     if ground is not None:
         said.append(
             f"over ground, {ground['turns']:.1f} turns: the airspeed is {_off(ground['difference'])} by "
-            f"{abs(ground['difference']):.2f} ± {ground['sd']:.2f} m/s, its own bar ± {ground['claimed']:.2f} (1 sd); the "
-            f"wind moves {ground['wind_north']:+.1f} north, {ground['wind_east']:+.1f} east"
+            f"{abs(ground['difference']):.2f} ± {ground['sd']:.2f} m/s, its own bar ± {ground['claimed']:.2f} (1 sd); "
+            f"the wind moves {ground['wind_north']:+.1f} north, {ground['wind_east']:+.1f} east"
         )
     return said + _flags(flight.events)
 
