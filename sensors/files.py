@@ -10,6 +10,7 @@ import io
 import lzma
 import os
 import stat
+import struct
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -179,8 +180,12 @@ def _unpacked(path: Path, unpack: Unpack) -> bytes:
         zipfile.BadZipFile,
         RuntimeError,
         NotImplementedError,
+        struct.error,
+        UnicodeError,
+        OverflowError,
+        LookupError,
     ) as error:
-        raise ValueError(f"is packed and cannot be unpacked ({error})") from None
+        raise ValueError(f"is packed and cannot be unpacked ({' '.join(str(error).split())[:200]})") from None
     if len(content) > UNPACKED:
         raise ValueError(f"unpacks to more than {UNPACKED / 1e6:g} MB: unpack it first, and take out what is needed")
     return content

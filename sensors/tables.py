@@ -3,15 +3,18 @@
 Only columns that are asked for are kept, as numbers: NaN where there is something else; times and durations in s.
 """
 
-import warnings
-from collections.abc import Collection, Iterable, Iterator
+import re
+from codecs import getincrementaldecoder
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, BinaryIO, Protocol
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sensors.files import Held, is_binary
+from sensors.csv_layout import BLANKS, LINE, LONGEST_HEAD, MOST_COLUMNS, cut, is_time, layout_of
+from sensors.files import Held
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,20 +24,16 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MOST_ROWS = 10_000_000  # in which a detector runs with 2 GB of memory
-MOST_COLUMNS = 20_000
 MOST_PACKED = 1_000_000_000  # B, of the columns of a Parquet file that are asked for, when unpacked
-CELLS = 2_000_000  # of a CSV file, read at once
+BLOCK = 4_000_000  # B of a text file, read at once
+MOST_LINE = 16_000_000  # B
 BATCH = 100_000  # rows of a Parquet file, read at once
-LONGEST_LINE = 1_000_000  # B, in which a CSV file's line of names ends
 LONGEST_NAME = 60  # characters of a name that are shown
 LONGEST_REASON = 200  # characters of what a library says
-SEPARATORS = (",", ";", "\t")
-MARKS = {  # byte order marks, the longer before those that they begin with
-    b"\xff\xfe\x00\x00": "utf-32",
-    b"\x00\x00\xfe\xff": "utf-32",
-    b"\xff\xfe": "utf-16",
-    b"\xfe\xff": "utf-16",
-}
+REMARK = re.compile(rb"(?:(?<=[\r\n])|^|(?<=[ \t]))[ \t]*#[^\r\n]*")
+MANY_BLANKS = re.compile(rb"[ \t]+")
+END_BLANKS = re.compile(rb"^ | (?=[\r\n])|(?<=[\r\n]) | $")
+PARTS = re.compile(r"(.*?:\d\d(?::\d\d)?)(\.\d+)?(Z|[-+][\d:]+)?")  # of a date with a time: whole, fraction, zone
 SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 DAY = 86400.0  # s
 
@@ -46,12 +45,23 @@ class TableFile(Protocol):
     def names(self) -> tuple[str, ...]:
         """Its columns."""
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was unusual in what was read up to now, a sentence each."""
+
     def read(self, columns: Collection[str]) -> dict[str, Array]:
         """Return columns of it as numbers; ValueError, one line, if that cannot be."""
+
+    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+        """Yield the same by so many rows, of which there may be any number."""
 
 
 def table_of(held: Held) -> TableFile:
     """Look at a table; ValueError, one line, if it is none."""
+    if held.head.startswith(b"ARROW1"):
+        return FeatherTable(held)
+    if held.head.startswith(b"FEA1"):
+        raise ValueError("is a Feather file of version 1: write it anew, as version 2 or as Parquet")
     return ParquetTable(held) if held.head.startswith(b"PAR1") else CsvTable(held)
 
 
@@ -68,104 +78,163 @@ def _too_many(rows: str) -> ValueError:
 
 
 class CsvTable:
-    """A CSV file with a line of names, separated by commas, semicolons or tabs; `#` begins a comment.
+    """A text file of numbers, laid out as `csv_layout` tells; `#` begins a comment.
 
-    It is UTF-8, UTF-16 or UTF-32 with a byte order mark, or else Latin-1.
+    Blocks of whole lines are read by pyarrow. What it cannot read (a text among numbers, a line that is too long) is
+    read again line by line: a value that is no number is none, a line of more values than there are names is left out.
     """
 
     def __init__(self, held: Held) -> None:
         self._held = held
-        self._encoding, lines = _first_lines(held)
-        self._separator = max(SEPARATORS, key=lines[0].count)
-        columns = max(line.count(self._separator) for line in lines) + 1
-        if columns > MOST_COLUMNS:
-            raise ValueError(f"has {columns} columns; at most {MOST_COLUMNS} are read")
-        with _csv_understood(), held.open() as file:
-            begun = self._csv(file, nrows=1)
-        self.names = _told_apart(begun.columns)
-        if (more := begun.index.nlevels) > 1:
-            raise ValueError(f"has {len(self.names)} names, and lines of {len(self.names) + more} values")
+        self.layout = layout_of(held)
+        self.names = self.layout.names
+        self._long = self._short = self._zeros = 0
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was unusual in what was read up to now."""
+        said = list(self.layout.remarks)
+        if self._long:
+            said.append(f"{self._long} lines have more values than there are names and are left out")
+        if self._short:
+            said.append(f"{self._short} lines have fewer values than there are names: what they lack is missing")
+        if self._zeros:
+            said.append(f"{self._zeros} zero bytes are passed over")
+        return tuple(said)
 
     def read(self, columns: Collection[str]) -> dict[str, Array]:
         """Return columns of it as numbers."""
-        parts: dict[str, list[Array]] = {name: [] for name in columns}
-        rows = 0
-        with _csv_understood(), self._held.open() as file:
-            for piece in self._csv(file, chunksize=max(1, CELLS // len(self.names))):
-                rows += len(piece)
-                if rows > MOST_ROWS:
-                    raise _too_many(f"more than {MOST_ROWS}")
-                for name, values in parts.items():
-                    values.append(_numbers(piece.iloc[:, self.names.index(name)]))
-        return {name: np.concatenate(values) if values else np.empty(0) for name, values in parts.items()}
+        return _joined(self.batches(columns), columns)
 
-    def _csv(self, file: BinaryIO, **options: Any) -> Any:
-        import pandas as pd  # late: it takes half a second
+    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+        """Yield columns of it as numbers, a block of lines at a time."""
+        places = {name: self.names.index(name) for name in columns}
+        for block in self._blocks():
+            yield self._fast(block, places) or self._slowly(block, places)
 
-        return pd.read_csv(
-            file,
-            sep=self._separator,
-            comment="#",
-            skipinitialspace=True,
-            encoding=self._encoding,
-            encoding_errors="replace",
-            low_memory=False,
-            **options,
-        )
+    def _blocks(self) -> Iterator[bytes]:
+        """Yield lines of numbers in UTF-8, whole ones, without comments."""
+        layout = self.layout
+        decode = None if layout.encoding.startswith("utf-8") else getincrementaldecoder(layout.encoding)("replace")
+        skip, rest, marked = layout.start, b"", layout.encoding == "utf-8-sig"
+        with self._held.open() as file:
+            while True:
+                raw = file.read(BLOCK)
+                text = raw if decode is None else decode.decode(raw, final=not raw).encode("utf-8", "replace")
+                if marked:
+                    text, marked = text.removeprefix(b"\xef\xbb\xbf"), False
+                rest += text
+                if skip and (len(rest) >= 4 * LONGEST_HEAD or not raw):
+                    rest, skip = _behind(rest, skip), 0
+                end = len(rest) if not raw else max(rest.rfind(b"\n"), rest.rfind(b"\r")) + 1
+                if end and not skip:
+                    yield self._plain(rest[:end])
+                    rest = rest[end:]
+                if len(rest) > MOST_LINE:
+                    raise ValueError(f"has a line of more than {MOST_LINE // 10**6} MB")
+                if not raw:
+                    return
 
+    def _plain(self, block: bytes) -> bytes:
+        """Return lines without comments and zeros, blanks between values made one."""
+        if b"\0" in block:
+            self._zeros += block.count(b"\0")
+            block = block.replace(b"\0", b"")
+        if b"#" in block:
+            block = REMARK.sub(b"", block)
+        if self.layout.separator == BLANKS:
+            block = END_BLANKS.sub(b"", MANY_BLANKS.sub(b" ", block))
+        return block
 
-@contextmanager
-def _csv_understood() -> Iterator[None]:
-    """Say in one line what pandas says of a file that is no table, and keep its warnings to ourselves."""
-    import pandas as pd
+    def _fast(self, block: bytes, places: Mapping[str, int]) -> dict[str, Array] | None:
+        """Return columns as pyarrow reads them, or None if it does not."""
+        import pyarrow as pa
+        from pyarrow import csv
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+        layout = self.layout
+        every = [str(i) for i in range(layout.width)]
+        chosen = {name: every[place] for name, place in places.items()}
+        kinds = {every[place]: pa.timestamp("ns") for place in places.values() if place in layout.dates}
+        if any(place in layout.clocks for place in places.values()):
+            return None
         try:
-            yield
-        except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeError, OverflowError) as error:
-            said = brief(" ".join(str(error).split()), LONGEST_REASON)
-            raise ValueError(f"not a table of comma-separated values ({said})") from error
+            table = csv.read_csv(
+                pa.BufferReader(block),
+                csv.ReadOptions(column_names=every, block_size=len(block) + 1, use_threads=False),
+                csv.ParseOptions(delimiter=layout.separator, newlines_in_values=False),
+                csv.ConvertOptions(
+                    column_types={name: kinds.get(name, pa.float64()) for name in every},
+                    include_columns=list(chosen.values()),
+                    decimal_point=layout.decimal,
+                ),
+            )
+        except pa.ArrowException:
+            return None
+        return {name: _floats_of(table.column(own)) for name, own in chosen.items()}
+
+    def _slowly(self, block: bytes, places: Mapping[str, int]) -> dict[str, Array]:
+        """Return columns line by line."""
+        layout = self.layout
+        columns: dict[str, list[float]] = {name: [] for name in places}
+        for line in LINE.split(block.decode("utf-8", errors="replace")):
+            if not line.strip():
+                continue
+            values = cut(line, layout.separator)
+            if len(values) > layout.width and any(values[layout.width :]):
+                self._long += 1
+                continue
+            self._short += len(values) < len(layout.names)
+            for name, place in places.items():
+                columns[name].append(_value(values[place], layout.decimal) if place < len(values) else np.nan)
+        return {name: np.array(values) for name, values in columns.items()}
 
 
-def _first_lines(held: Held) -> tuple[str, list[str]]:
-    """Return the encoding of a CSV file, the line of names, and the one behind it."""
-    head = held.first(LONGEST_LINE)
-    if not head:
-        raise ValueError("not a table of comma-separated values (an empty file)")
-    encoding = next((name for mark, name in MARKS.items() if head.startswith(mark)), "")
-    if not encoding:
-        if is_binary(head[:4096]):
-            raise ValueError("not a table of comma-separated values (a binary file)")
-        encoding = "utf-8-sig" if _is_utf8(head) else "latin-1"
-    lines = head.decode(encoding, errors="replace").splitlines()
-    whole = lines[:-1] if len(head) == LONGEST_LINE else lines
-    said = [line for line in whole if line.strip() and not line.startswith("#")]
-    if not said and whole != lines:
-        raise ValueError(f"not a table of comma-separated values (no names in the first {LONGEST_LINE // 1000} kB)")
-    return encoding, [*said[:2], ""][:2]
+def _behind(text: bytes, characters: int) -> bytes:
+    """Return what comes behind so many characters."""
+    return text[len(text.decode("utf-8", errors="surrogateescape")[:characters].encode("utf-8", "surrogateescape")) :]
 
 
-def _is_utf8(head: bytes) -> bool:
-    """Whether text is UTF-8; its last character may be cut."""
+def _joined(batches: Iterable[Mapping[str, Array]], columns: Collection[str]) -> dict[str, Array]:
+    """Return columns as wholes."""
+    parts: dict[str, list[Array]] = {name: [] for name in columns}
+    rows = 0
+    for batch in batches:
+        rows += next((values.size for values in batch.values()), 0)
+        if rows > MOST_ROWS:
+            raise _too_many(f"more than {MOST_ROWS}")
+        for name, values in parts.items():
+            values.append(batch[name])
+    return {name: np.concatenate(values) if values else np.empty(0) for name, values in parts.items()}
+
+
+def _floats_of(column: "pa.ChunkedArray") -> Array:
+    return np.concatenate([_floats(chunk) for chunk in column.chunks]) if column.num_chunks else np.empty(0)
+
+
+def _value(text: str, decimal: str) -> float:
+    """Return a value as a number, a date as seconds since 1970, a time of day as seconds; NaN for all else."""
+    if is_time(text):
+        return _seconds_of(text)
     try:
-        head.decode("utf-8")
-    except UnicodeDecodeError as error:
-        return error.start >= len(head) - 3 and len(head) == LONGEST_LINE
-    return True
+        return float(text.replace(",", ".") if decimal == "," else text) if "_" not in text else np.nan
+    except ValueError:
+        return np.nan
 
 
-def _told_apart(names: Iterable[Any]) -> tuple[str, ...]:
-    """Names without spaces around them; those that are the same then get a number."""
-    found: dict[str, None] = {}
-    for given in names:
-        name = stripped = str(given).strip()
-        number = 0
-        while name in found:
-            number += 1
-            name = f"{stripped}.{number}"
-        found[name] = None
-    return tuple(found)
+def _seconds_of(text: str) -> float:
+    """Return a time in seconds: of the day, or since 1970, by UTC if it does not tell."""
+    text = text.replace(",", ".")
+    if "-" not in text:
+        hours, minutes, seconds = text.split(":")
+        return 3600.0 * int(hours) + 60.0 * int(minutes) + float(seconds)
+    found = PARTS.fullmatch(text)
+    if found is None:
+        return np.nan
+    try:
+        whole = datetime.fromisoformat(f"{found[1]}{found[3] or '+00:00'}")
+        return (whole if whole.tzinfo else whole.replace(tzinfo=UTC)).timestamp() + float(f"0{found[2] or ''}")
+    except ValueError:
+        return np.nan
 
 
 def _numbers(column: "pd.Series[Any]") -> Array:
@@ -197,24 +266,32 @@ class ParquetTable:
             columns = file.metadata.num_columns
             if columns > MOST_COLUMNS:
                 raise ValueError(f"has {columns} columns; at most {MOST_COLUMNS} are read")
-            if file.metadata.num_rows > MOST_ROWS:
-                raise _too_many(str(file.metadata.num_rows))
+            self._rows = file.metadata.num_rows
             self._schema = file.schema_arrow
             self.names: tuple[str, ...] = tuple(self._schema.names)
 
+    remarks: tuple[str, ...] = ()
+
     def read(self, columns: Collection[str]) -> dict[str, Array]:
         """Return columns of it as numbers."""
-        parts: dict[str, list[Array]] = {name: [] for name in columns}
+        self._check_rows()
+        return _joined(self.batches(columns), columns)
+
+    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+        """Yield columns of it as numbers, some rows at a time."""
         with _parquet_understood():
             for batch in self._batches(columns):
-                for name, values in parts.items():
-                    values.append(_floats(batch.column(name)))
-        return {name: np.concatenate(values) if values else np.empty(0) for name, values in parts.items()}
+                yield {name: _floats(batch.column(name)) for name in columns}
+
+    def _check_rows(self) -> None:
+        if self._rows > MOST_ROWS:
+            raise _too_many(str(self._rows))
 
     def frame(self, columns: Collection[str], texts: Collection[str] = ()) -> "pd.DataFrame":
         """Return columns of it as pandas has them: numbers, flags and, where they may be, texts."""
         import pyarrow as pa
 
+        self._check_rows()
         chosen = pa.schema([self._schema.field(self.names.index(name)) for name in columns])
         for column in chosen:
             if not (_is_number(column.type) or (_is_text(column.type) and column.name in texts)):
@@ -237,18 +314,7 @@ class ParquetTable:
                 yield batch
 
     def _is_written(self, name: str) -> bool:
-        """Whether a column is text; ValueError if it holds neither that nor numbers or times."""
-        import pyarrow as pa
-
-        if self.names.count(name) > 1:
-            raise ValueError(f"has {self.names.count(name)} columns {brief(name)!r}")
-        kind = self._schema.field(name).type
-        values = kind.value_type if pa.types.is_dictionary(kind) else kind
-        if _is_text(values):
-            return True
-        if not (_is_number(values) or _seconds(values)):
-            raise ValueError(f"column {brief(name)!r} holds {brief(str(kind))}, not numbers")
-        return False
+        return _is_written(self._schema, name)
 
     @staticmethod
     def _check_size(metadata: "pq.FileMetaData", columns: set[str]) -> None:
@@ -272,8 +338,62 @@ class ParquetTable:
             yield parquet
 
 
+class FeatherTable:
+    """A Feather file of version 2, which is an Arrow file: batches of columns."""
+
+    remarks: tuple[str, ...] = ()
+
+    def __init__(self, held: Held) -> None:
+        self._held = held
+        with _parquet_understood("Feather"), self._opened() as file:
+            self._schema = file.schema
+            self._count = file.num_record_batches
+        self.names: tuple[str, ...] = tuple(self._schema.names)
+        if len(self.names) > MOST_COLUMNS:
+            raise ValueError(f"has {len(self.names)} columns; at most {MOST_COLUMNS} are read")
+
+    def read(self, columns: Collection[str]) -> dict[str, Array]:
+        """Return columns of it as numbers."""
+        return _joined(self.batches(columns), columns)
+
+    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+        """Yield columns of it as numbers, some rows at a time."""
+        for name in columns:
+            _is_written(self._schema, name)
+        places = {name: self.names.index(name) for name in columns}
+        with _parquet_understood("Feather"), self._opened(sorted(places.values())) as file:
+            for i in range(self._count):
+                batch = file.get_batch(i)
+                for first in range(0, batch.num_rows, BATCH):
+                    some = batch.slice(first, BATCH)
+                    yield {name: _floats(some.column(name)) for name in places}
+
+    @contextmanager
+    def _opened(self, places: list[int] | None = None) -> "Iterator[pa.ipc.RecordBatchFileReader]":
+        import pyarrow as pa
+
+        options = pa.ipc.IpcReadOptions(included_fields=places, use_threads=False)
+        with self._held.open() as file, pa.ipc.open_file(file, options=options) as reader:
+            yield reader
+
+
+def _is_written(schema: "pa.Schema", name: str) -> bool:
+    """Whether a column is text; ValueError if it holds neither that nor numbers or times."""
+    import pyarrow as pa
+
+    if schema.names.count(name) > 1:
+        raise ValueError(f"has {schema.names.count(name)} columns {brief(name)!r}")
+    kind = schema.field(name).type
+    values = kind.value_type if pa.types.is_dictionary(kind) else kind
+    if _is_text(values):
+        return True
+    if not (_is_number(values) or _seconds(values)):
+        raise ValueError(f"column {brief(name)!r} holds {brief(str(kind))}, not numbers")
+    return False
+
+
 @contextmanager
-def _parquet_understood() -> Iterator[None]:
+def _parquet_understood(what: str = "Parquet") -> Iterator[None]:
     """Say in one line what pyarrow says of a file that is damaged."""
     import pyarrow as pa
 
@@ -281,9 +401,9 @@ def _parquet_understood() -> Iterator[None]:
         yield
     except (pa.ArrowException, OSError, UnicodeError) as error:
         said = brief(" ".join(str(error).split()), LONGEST_REASON)
-        raise ValueError(f"not a Parquet file that can be read ({said})") from None
+        raise ValueError(f"not a {what} file that can be read ({said})") from None
     except MemoryError:
-        raise ValueError("not a Parquet file that can be read (it asks for more memory than there is)") from None
+        raise ValueError(f"not a {what} file that can be read (it asks for more memory than there is)") from None
 
 
 def _is_number(kind: "pa.DataType") -> bool:

@@ -188,12 +188,12 @@ def test_a_file_of_something_else_is_left_out_and_told(read) -> None:
 @pytest.mark.parametrize(
     ("change", "mapping", "says"),
     [
-        (lambda f: f.drop(columns="fy"), None, "lacks fy; it has t, fx, fz; say which is which with --map fy=…"),
-        (lambda f: f.rename(columns=str.upper), None, "lacks t, fx, fy, fz; it has T, FX, FY, FZ; say which"),
+        (lambda f: f[["t", "fy"]].rename(columns={"fy": "b"}), None, "lacks fx, fy, fz; it has t, b; say which"),
+        (lambda f: f.add_prefix("my "), None, "lacks t, fx, fy, fz; it has my t, my fx, my fy, my fz; say which"),
         (lambda f: f, "fx=ax", "has no column 'ax'; it has t, fx, fy, fz; say which is which with --map fx=…"),
         (lambda f: f.iloc[::-1], None, "time runs backwards: 5.996 s comes after 5.998 s (row 2)"),
         (lambda f: f.assign(t=f["t"] * 1e6), None, "map t=…*1e-6 if it is in microseconds"),
-        (lambda f: f.assign(t=f["t"] * 1e-6), None, "from 10 to 20000 are understood"),
+        (lambda f: f.assign(t=f["t"] * 1e-6), None, "from 1 to 20000 are understood"),
         (lambda f: f[:5], None, "5 rows with a time are too few; at least 10 are needed"),
         (lambda f: f.assign(fx="a"), None, "column 'fx' holds no numbers"),
         (lambda f: f.assign(fx=f["fx"].where(f.index % 2 == 0), fy=f["fy"].where(f.index % 2 == 1)), None, "no row"),
@@ -225,7 +225,6 @@ def test_a_factor_in_the_map_states_the_unit(read, factor: str) -> None:
     [
         ((frame(), frame()), "part1.csv begins at 0 s, before"),
         ((frame(), frame()[["t", "fx"]]), "fx is found twice"),
-        ((frame()[["t", "fx"]], frame()[["t", "fy"]]), "lacks fz; it has t, fx, t, fy; say which"),
         ((frame()[["t", "fx"]], frame(start=10.0, end=20.0)[["t", "fy", "fz"]]), "share no time: map t=…"),
         (
             (frame(), frame(start=10.0, end=20.0) / [1.0, 9.8, 9.8, 9.8]),
@@ -273,8 +272,8 @@ def test_a_log_may_hold_more_than_force(read) -> None:
     recording = read(table, mapping="temperature=degrees+273.15,p_static=hPa*100,fx=fx+0.3")
     assert recording.readings[:, 1] == pytest.approx(table["fx"] + 0.3)
     assert set(recording.series) == {"temperature", "p_static"}
-    assert recording.series["temperature"].values == pytest.approx(288.15)
-    assert recording.series["p_static"].values == pytest.approx(101325.0)
+    assert recording.series["temperature"].values == pytest.approx(288.15)  # noqa: PD011
+    assert recording.series["p_static"].values == pytest.approx(101325.0)  # noqa: PD011
     assert recording.series["p_static"].t == pytest.approx(table["t"])
 
 

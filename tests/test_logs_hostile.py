@@ -343,7 +343,6 @@ def test_names_in_latin_1_can_be_mapped(tmp_path: Path) -> None:
         (b"t,fx,fy,fz\n", "column 't' holds no numbers"),
         (b"x" * 2_000_000, "no names in the first 1000 kB"),
         (b"# remark\n" * 200_000, "no names in the first 1000 kB"),
-        (TEXT.encode() + b"1,2,3,4,5,6\n", "Expected 4 fields in line 502, saw 6"),
         (TEXT.replace("fx", "f" * 100_000).encode(), "it has t, ffffff"),
         (b"t,fx,fy,fz\n" + b"1,2,3,4,5,6\n" * 20, "has 4 names, and lines of 6 values"),
         (b"t,fx,fy,fz\n" + (b"1," * 50_000 + b"\n") * 3, "has 50001 columns; at most 20000 are read"),
@@ -365,6 +364,14 @@ def test_a_cell_of_1e5_characters_is_no_number(tmp_path: Path) -> None:
     assert np.isnan(recording.readings[3, 2])
 
 
+def test_a_line_of_more_values_than_names_is_left_out_and_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_bytes(TEXT.encode() + b"1,2,3,4,5,6\n")
+    recording = read_log([path])
+    assert len(recording.readings) == 500
+    assert recording.remarks == (f"{path}: 1 lines have more values than there are names and are left out",)
+
+
 def test_the_rows_of_a_csv_file_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tables, "MOST_ROWS", 400)
     path = written(tmp_path / "a.csv", frame(end=1.0))
@@ -376,7 +383,7 @@ def test_pieces_of_a_csv_file_change_nothing(tmp_path: Path, monkeypatch: pytest
     table.loc[[3, 300], "fx"] = "n/a"
     path = written(tmp_path / "a.csv", table)
     whole = read_log([path]).readings
-    monkeypatch.setattr(tables, "CELLS", 500)
+    monkeypatch.setattr(tables, "BLOCK", 500)
     assert np.array_equal(read_log([path]).readings, whole, equal_nan=True)
 
 

@@ -1,30 +1,36 @@
-"""Tables of a log as they stand in its files: CSV, Parquet, PX4 ULog, ArduPilot DataFlash.
+"""Tables of a log as they stand in its files: text, Parquet, Feather, PX4 ULog, ArduPilot DataFlash, MAVLink tlog.
 
-ULog and DataFlash name a column ``message.field``, or ``message[instance].field`` beyond the first; their time is in
-microseconds since boot.
+Autopilots' logs name a column ``message.field``, or ``message[instance].field`` beyond the first; what each message
+means is in `autopilots`.
 """
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sensors.bench_log import Source, listed
-from sensors.files import look
-from sensors.tables import brief, table_of
+from sensors.bench_log import Source, listed, resolved
+from sensors.files import Held, look
+from sensors.tables import CsvTable, TableFile, brief, table_of
+from uavsim.logs import tlog
+from uavsim.logs.autopilots import ARDUPILOT, MAVLINK, PX4, Autopilot, Fields
 from uavsim.logs.dataflash import HEAD, TEXT, read_dataflash
+from uavsim.logs.known import usual
 from uavsim.logs.logged import Key, Logged, labelled
 from uavsim.logs.recording import AXES, Array
 from uavsim.logs.ulog import read_ulog
 
 Mapped = Mapping[str, Source]
 Read = Callable[[Collection[str]], Mapping[str, Array]]
+Batches = Callable[[Collection[str]], Iterator[Mapping[str, Array]]]
 
 MESSAGE = re.compile(r"[-+]?\s*(\w+)(?:\[(\d{1,9})\])?\.")  # as in sensor_accel[1].x: message, instance
+BLACKBOX = b"H Product:Blackbox"  # with which a raw blackbox log begins
+ARROW = b"ARROW1"  # with which a Feather file begins
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,9 +45,21 @@ class Table:
         Which there are.
     read : callable
         Returns columns as numbers; ValueError if they are none.
+    batches : callable or None
+        Yields the same some rows at a time, if it can.
     usual : mapping
         What ours are called if no map says so.
     remarks : tuple of str
+    later : callable
+        Returns remarks on what was read.
+    label : str
+        Of the message, if it is one of several in the file.
+    counts : bool
+        Whether forces are counts, of which 1 g is to be told.
+    of_day : frozenset of str
+        Columns that hold times of day.
+    named : bool
+        Whether the columns have names.
     """
 
     name: str
@@ -49,37 +67,12 @@ class Table:
     read: Read
     usual: Mapped
     remarks: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Autopilot:
-    """What an autopilot's logs are like.
-
-    Attributes
-    ----------
-    log : str
-        What they are called.
-    time : str
-        Field of every message that is its time, µs since boot.
-    force : mapping
-        Messages that hold the specific force, the best first, with their axes.
-    """
-
-    log: str
-    time: str
-    force: Mapping[str, tuple[str, str, str]]
-
-
-PX4 = Autopilot(
-    "ULog",
-    "timestamp",
-    {
-        "sensor_combined": ("accelerometer_m_s2[0]", "accelerometer_m_s2[1]", "accelerometer_m_s2[2]"),
-        "vehicle_acceleration": ("xyz[0]", "xyz[1]", "xyz[2]"),
-        "sensor_accel": ("x", "y", "z"),
-    },
-)
-ARDUPILOT = Autopilot("DataFlash log", "TimeUS", {"IMU": ("AccX", "AccY", "AccZ"), "ACC": ("AccX", "AccY", "AccZ")})
+    batches: Batches | None = None
+    later: Callable[[], tuple[str, ...]] = tuple
+    label: str = ""
+    counts: bool = False
+    of_day: frozenset[str] = field(default_factory=frozenset)
+    named: bool = True
 
 
 @contextmanager
@@ -95,49 +88,139 @@ def read_tables(path: Path, sources: Mapped) -> list[Table]:
     """Return the tables of a file that the map asks for."""
     with named(str(path)):
         held = look(path)
-        wanted = _asked(sources)
+        if held.head.startswith(BLACKBOX):
+            raise ValueError(
+                "is a raw blackbox log: decode it first (blackbox_decode, or save as CSV in the Blackbox Explorer)"
+            )
         if held.head.startswith(b"ULog"):
-            names = {name for name, _ in wanted} or set(PX4.force)
-            return _messages(path, PX4, read_ulog(held.content(), names), wanted)
+            return _autopilot(path, PX4, lambda names: read_ulog(held.content(), names), sources)
         if held.head.startswith((HEAD, TEXT)):
-            names = {name for name, _ in wanted} or set(ARDUPILOT.force)
-            return _messages(path, ARDUPILOT, read_dataflash(held, names), wanted)
-        table = table_of(held)
-        return [Table(str(path), table.names, table.read, {})]
+            return _autopilot(path, ARDUPILOT, lambda names: read_dataflash(held, names), sources)
+        if tlog.is_tlog(held.first(tlog.ENOUGH)):
+            return _autopilot(path, MAVLINK, lambda names: tlog.read_tlog(held.content(), names), sources)
+        return [_table(path, held, sources)]
 
 
-def _asked(sources: Mapped) -> list[Key]:
-    """Messages, with their instances, that the map names."""
-    found = [MESSAGE.match(source.column) for source in sources.values()]
-    return list(dict.fromkeys((match[1], int(match[2] or 0)) for match in found if match))
+def _table(path: Path, held: Held, sources: Mapped) -> Table:
+    """Return a file that is a table."""
+    table: TableFile = table_of(held)
+    mapped = {ours: source for ours, source in sources.items() if resolved(source, table.names).column in table.names}
+    layout = table.layout if isinstance(table, CsvTable) else None
+    has_names = layout is None or layout.named
+    guessed = usual(table.names, layout.units if layout else (), mapped, named=has_names)
+    clocks = frozenset(layout.names[i] for i in layout.clocks if i < len(layout.names)) if layout else frozenset()
+    return Table(
+        str(path),
+        table.names,
+        table.read,
+        guessed.sources,
+        guessed.remarks,
+        table.batches,
+        lambda: table.remarks,
+        counts=guessed.counts,
+        of_day=clocks,
+        named=has_names,
+    )
 
 
-def _messages(path: Path, kind: Autopilot, log: Logged, wanted: Sequence[Key]) -> list[Table]:
-    """Tables of an autopilot's log: the messages that the map asks for, or the best that holds the specific force."""
-    chosen = list(wanted) or [key for key in ((name, 0) for name in kind.force) if key in log.tables][:1]
-    lacking = [key for key in chosen if key not in log.tables]
-    if lacking or not chosen:
+# -- autopilots ------------------------------------------------------------------------------------------------------
+
+
+def _asked(sources: Mapped) -> dict[Key, list[str]]:
+    """Messages, with their instances, that the map names, and what of ours it takes from them."""
+    found: dict[Key, list[str]] = {}
+    for ours, source in sources.items():
+        if match := MESSAGE.match(source.column):
+            found.setdefault((match[1], int(match[2] or 0)), []).append(ours)
+    return found
+
+
+def _autopilot(path: Path, kind: Autopilot, read: Callable[[set[str]], Logged], sources: Mapped) -> list[Table]:
+    """Tables of an autopilot's log: the messages that the map asks for, and the best that hold what it leaves open."""
+    asked = _asked(sources)
+    log = read({name for name, _ in asked} | set(kind.force) | set(kind.series))
+    chosen = dict.fromkeys(asked)
+    mapped = set(sources)
+    if not any(axis in mapped for axis in AXES):
+        best = next((key for key in _instances(kind.force, log)), None)
+        if best is None:
+            raise _missing_message((), kind, log)
+        chosen[best] = None
+    if lacking := [key for key in chosen if key not in log.tables]:
         raise _missing_message(lacking, kind, log)
-    tables, end = [], -np.inf
+    for key in _instances(kind.series, log):
+        chosen.setdefault(key, None)
+    tables, taken, end = [], set(mapped - {"t"}), -np.inf
     for key in chosen:
-        fields = log.tables[key]
-        columns = {_column(key, field): field for field in fields}
-        time = Source(_column(key, kind.time), 1e-6)
-        if kind.time in fields:
-            end = max(end, float(_floats(fields[kind.time])[-1]) * time.factor)
-        axes = dict(zip(AXES, kind.force.get(key[0], ()), strict=False))
-        usual = {"t": time, **{axis: Source(_column(key, field)) for axis, field in axes.items()}}
-        tables.append(Table(str(path), tuple(columns), _reader(fields, columns), usual))
+        fields = kind.completed(key[0], log.tables[key])
+        table, at_end = _message(path, kind, key, fields, taken)
+        end = max(end, at_end)
+        if key in asked or key[0] in kind.force or table.usual.keys() - {"t"}:
+            tables.append(table)
+            taken |= table.usual.keys() - {"t"}
+    tables += _others(path, kind, log, chosen)
     if log.damage:
         until = f"; it ends at {end:.3f} s" if np.isfinite(end) else ""
         said = f"the {kind.log} {log.damage}: what could be read is replayed{until}"
-        tables[0] = Table(tables[0].name, tables[0].columns, tables[0].read, tables[0].usual, (said,))
+        first = tables[0]
+        tables[0] = Table(first.name, first.columns, first.read, first.usual, (said, *first.remarks), label=first.label)
+    return tables
+
+
+def _instances(names: Collection[str], log: Logged) -> list[Key]:
+    """The first instance of each message that was logged."""
+    found = []
+    for name in names:
+        numbers = sorted(number for logged, number in log.tables if logged == name)
+        found += [(name, numbers[0])] if numbers else []
+    return found
+
+
+def _message(path: Path, kind: Autopilot, key: Key, fields: Fields, taken: set[str]) -> tuple[Table, float]:
+    """Return a message as a table, and the last time in it, s."""
+    columns = {_column(key, name): name for name in fields}
+    usual_ones, end = {}, -np.inf
+    clock = next(((name, unit) for name, unit in kind.times_of(key[0]) if name in fields), None)
+    if clock is not None:
+        usual_ones["t"] = Source(_column(key, clock[0]), clock[1])
+        end = float(_floats(fields[clock[0]])[-1]) * clock[1]
+    axes = dict(zip(AXES, kind.force.get(key[0], ()), strict=False))
+    signs = kind.signs.get(key[0], 1.0)
+    usual_ones |= {
+        axis: Source(_column(key, name), signs) for axis, name in axes.items() if axis not in taken and name in fields
+    }
+    remarks = []
+    for ours, choices in kind.series.get(key[0], {}).items():
+        for name, factor, offset, said in choices:
+            if name in fields and ours not in taken and ours not in usual_ones:
+                usual_ones[ours] = Source(_column(key, name), factor, offset)
+                if said:
+                    remarks.append(f"{ours} is taken from {_column(key, name)}: {said}")
+    table = Table(str(path), tuple(columns), _reader(fields, columns), usual_ones, tuple(remarks), label=labelled(key))
+    return table, end
+
+
+def _others(path: Path, kind: Autopilot, log: Logged, chosen: Mapping[Key, None]) -> list[Table]:
+    """Other accelerometers of the same message."""
+    force = next((key for key in chosen if key[0] in kind.force), None)
+    if force is None:
+        return []
+    again = kind.again.get(force[0], force[0])
+    keys = [key for key in log.tables if key[0] == again and key not in chosen and (again == force[0] or key[1] > 0)]
+    tables = []
+    for key in keys:
+        fields = kind.completed(key[0], log.tables[key])
+        table, _ = _message(path, kind, key, fields, set())
+        mine = {ours: source for ours, source in table.usual.items() if ours in ("t", *AXES)}
+        if len(mine) == 4:
+            tables.append(Table(table.name, table.columns, table.read, mine, label=f"other {table.label}"))
     return tables
 
 
 def _missing_message(lacking: Sequence[Key], kind: Autopilot, log: Logged) -> ValueError:
     what = brief(labelled(lacking[0])) if lacking else " or ".join(kind.force)
-    never = f" that was logged ({what} was never logged)" if lacking and lacking[0][0] in log.silent else ""
+    silent = [name for name in ([lacking[0][0]] if lacking else kind.force) if name in log.silent]
+    never = f" that was logged ({', '.join(silent)} was never logged)" if silent else ""
     first, axes = next(iter(kind.force.items()))
     damage = f" (the {kind.log} {log.damage})" if log.damage else ""
     return ValueError(
@@ -146,11 +229,11 @@ def _missing_message(lacking: Sequence[Key], kind: Autopilot, log: Logged) -> Va
     )
 
 
-def _column(key: Key, field: str) -> str:
-    return f"{labelled(key)}.{field}"
+def _column(key: Key, name: str) -> str:
+    return f"{labelled(key)}.{name}"
 
 
-def _reader(fields: Mapping[str, NDArray[np.generic]], columns: Mapping[str, str]) -> Read:
+def _reader(fields: Fields, columns: Mapping[str, str]) -> Read:
     return lambda chosen: {name: _floats(fields[columns[name]]) for name in chosen}
 
 

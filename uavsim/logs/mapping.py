@@ -10,10 +10,15 @@ import numpy as np
 from sensors.bench_log import LATEST, MOST_READ, Source, listed, numbers, parse_map, resolved
 from sensors.tables import MOST_ROWS, brief
 from uavsim.logs.formats import Mapped, Table, named, read_tables
-from uavsim.logs.recording import AXES, COLUMNS, GAP, SERIES, Array, Recording, Series
+from uavsim.logs.known import COUNTS
+from uavsim.logs.recording import AXES, COLUMNS, GAP, SAMPLED_AND_HELD, SERIES, Array, Recording, Series
+from uavsim.logs.stamps import FEWEST, BackwardsError, Stamped, stamped
+from uavsim.logs.wraps import unwrapped
+from uavsim.truth import STANDARD_GRAVITY
 
-SLOWEST, FASTEST = 10.0, 20_000.0  # Hz, median rates that are understood
-FEWEST = 10  # readings
+SLOWEST, FASTEST = 1.0, 20_000.0  # Hz, median rates that are understood
+SLOW = 20.0  # Hz, below which a stroke of 0.3 s has a handful of readings
+OTHER = "other "  # before the label of a message of another accelerometer
 LOOKS_LIKE_G = (0.7, 1.4)  # median of |f|: at rest and in level flight it is 1 in g and 9.8 in m/s²
 TOO_MUCH = 400.0  # m/s², median of |f|: no flight feels 40 g for most of the time, counts and mg read so
 UNEQUAL = 1.2  # ratio of the axes' factors above which their units are mixed
@@ -28,22 +33,26 @@ class Piece:
     force: dict[str, Array]
     factors: dict[str, float | None]
     series: dict[str, Series] = field(default_factory=dict)
+    cuts: list[int] = field(default_factory=list)
+    other: str = ""  # the name of another accelerometer than that which is replayed
 
 
 def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
     """Read a log of one file or several.
 
     Files that hold all axes follow each other; axes of different files (or messages) are brought to the times of the
-    one with fx by straight lines. Rows without a time, and those whose time is that of the row before, are left out.
+    one with fx by straight lines. Rows without a time, those whose time is that of the row before, and those whose time
+    alone is out of order are left out; where the clock begins anew, or the rate changes, the log is cut into parts.
 
     Parameters
     ----------
     paths
-        CSV, Parquet, ULog or DataFlash, told apart by what they hold; also packed by gzip, bzip2, xz or zip.
+        Text (CSV and its kin), Parquet, Feather, ULog, DataFlash or tlog, told apart by what they hold; also packed by
+        gzip, bzip2, xz or zip.
     mapping
-        ``ours=theirs,…``, as in ``t=time,fx=-Ay,fy=ax*9.80665,fz=imu[0].z``; of ULog and DataFlash theirs is
-        ``message.field`` or ``message[instance].field``. Without, columns are t, fx, fy, fz; ULog and DataFlash have
-        defaults of their own, and their time in seconds.
+        ``ours=theirs,…``, as in ``t=time,fx=-Ay,fy=ax*9.80665+0.3,fz=imu[0].z``; of autopilots' logs theirs is
+        ``message.field`` or ``message[instance].field``. Without, columns are t, fx, fy, fz, or names that leave no
+        doubt, which is told; autopilots' logs have defaults of their own, and their time in seconds.
 
     Raises
     ------
@@ -63,17 +72,22 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
             pieces.append(piece)
     names = tuple(path.name for path in paths)
     with named(", ".join(map(str, paths))):
+        _check_found(sources, tables)
+        others = {piece.other: _table_of(piece) for piece in pieces if piece.other}
+        pieces = [piece for piece in pieces if not piece.other]
         series = _series(pieces)
         pieces = [piece for piece in pieces if piece.force]
-        missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
-        if missing:
-            raise ValueError(_lacks(missing, [name for table in tables for name in table.columns]))
+        if not pieces or not any("fx" in piece.force or set(piece.force) & set(sources) for piece in pieces):
+            missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
+            raise ValueError(_lacks(missing, [name for table in tables for name in table.columns], tables=tables))
         factors = {axis: factor for piece in pieces for axis, factor in piece.factors.items()}
         _check_factors(factors)
-        readings = _merged(pieces)
+        readings, cuts, unwrapped = _merged(pieces)
+        remarks += unwrapped
         if len(readings) > MOST_ROWS:
             raise ValueError(f"{len(readings)} rows; at most {MOST_ROWS} are replayed")
-        recording = Recording(names, mapping or "", readings, (*remarks, *_remarks(readings)), series)
+        said = (*remarks, *_remarks(readings))
+        recording = Recording(names, mapping or "", readings, said, series, tuple(cuts), others)
         _check_rate(recording)
         _check_numbers(readings[:, 1:])
         if not any(factors.values()):  # else somebody has thought of units
@@ -84,61 +98,138 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
 def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) -> Piece | None:
     """Take ours out of a table; None if it has none of the axes, or no time."""
     found = table.columns
-    wanted = {name: resolved(sources.get(name, table.usual.get(name, Source(name))), found) for name in COLUMNS}
+    wanted = {name: _source(name, table, sources) for name in (*COLUMNS, *SERIES)}
     held = {name: source for name, source in wanted.items() if source.column in found}
-    missing = [name for name in COLUMNS if name not in held]
-    if "t" in missing and held and not alone:
-        missing = ["t"]  # what it lacks besides may be in another file
-    others = {name: resolved(sources.get(name, table.usual.get(name, Source(name))), found) for name in SERIES}
-    others = {name: source for name, source in others.items() if source.column in found}
-    if missing and (alone or missing == ["t"]):
-        named = [sources[name].column for name in missing if name in sources]
-        raise ValueError(_lacks(missing, found, named))
-    if "t" in missing or len(held) + len(others) == 1:
+    axes = [axis for axis in AXES if axis in held]
+    lacking = [name for name in COLUMNS if name in sources and name not in held]
+    headless = "fx" not in axes and not set(axes) & set(sources)
+    if ("t" not in held and (held or alone)) or (alone and (lacking or headless)):
+        missing = lacking or [name for name in COLUMNS if name not in held]
+        if not alone and "t" in missing:
+            missing = ["t"]  # what it lacks besides may be in another file
+        raise ValueError(_lacks(missing, found, [sources[name].column for name in missing if name in sources], [table]))
+    if "t" not in held or len(held) == 1:
         return None
-    values = _values(table, {**held, **others}, remarks)
+    values = _values(table, held, remarks)
     t = values.pop("t")
-    timed = np.isfinite(t)
-    back = np.flatnonzero(np.diff(t[timed]) < 0.0)
-    if back.size:
-        before, after = t[timed][back[0]], t[timed][back[0] + 1]
-        raise ValueError(
-            f"time runs backwards: {after:.10g} s comes after {before:.10g} s (row {back[0] + 2}); map t=… to a column "
-            f"that rises, of {listed(found)}"
-        )
-    axes = [axis for axis in AXES if axis in values]
+    if table.counts and axes:
+        _count(values, axes, table.name, remarks)
+    try:
+        clock = held["t"]
+        columns = np.column_stack([*values.values()])
+        rows = stamped(t, abs(clock.factor), columns, of_day=clock.column in table.of_day)
+    except BackwardsError as error:
+        raise ValueError(f"{error}; map t=… to a column that rises, of {listed(found)}") from None
+    where = f"{table.name}: {table.label}: " if table.label else f"{table.name}: "
+    remarks += [f"{where}{said}" for said in rows.remarks]
     stated = {axis: "*" in sources[axis].column[len(held[axis].column) :] for axis in axes if axis in sources}
-    factors = {axis: held[axis].factor if stated.get(axis) else None for axis in axes}
-    keep = np.flatnonzero(timed)
-    keep = keep[np.concatenate(([True], np.diff(t[keep]) > 0.0))] if keep.size else keep
-    if not timed.all():
-        remarks.append(f"{table.name}: {np.count_nonzero(~timed)} rows have no time and are left out")
-    if keep.size < np.count_nonzero(timed):
-        remarks.append(f"{table.name}: {np.count_nonzero(timed) - keep.size} rows have the time of the row before")
-    force = {name: values[name][keep] for name in axes}
+    known = not any(axis in sources for axis in axes) and (table.counts or _is_scaled(held, axes))
+    factors = {axis: held[axis].factor if stated.get(axis) or known else None for axis in axes}
+    force = {axis: values[axis][rows.rows] for axis in axes}
     if len(force) == len(AXES) and not any(factors.values()):
         _check_unit(np.column_stack([force[axis] for axis in AXES]))
-    series = {
-        name: Series(name, t[keep], values[name][keep], f"{table.name}: {source.column}")
-        for name, source in others.items()
+    series = _series_of(table, held, values, rows, remarks)
+    other = table.label.removeprefix(OTHER) if table.label.startswith(OTHER) else ""
+    return Piece(table.name, rows.t, force, factors, series, rows.cuts, other)
+
+
+def _is_scaled(held: Mapped, axes: Sequence[str]) -> bool:
+    """Whether the axes have a unit that was known without a map."""
+    return any(abs(held[axis].factor) != 1.0 or held[axis].offset for axis in axes)
+
+
+def _check_found(sources: Mapped, tables: Sequence[Table]) -> None:
+    """Refuse a map that names columns which no table has."""
+    held = {
+        ours
+        for table in tables
+        for ours, source in sources.items()
+        if resolved(source, table.columns).column in table.columns
     }
-    return Piece(table.name, t[keep], force, factors, series)
+    if lacking := [ours for ours in sources if ours not in held]:
+        found = [name for table in tables for name in table.columns]
+        raise ValueError(_lacks(lacking, found, [sources[ours].column for ours in lacking], tables))
+
+
+def _source(name: str, table: Table, sources: Mapped) -> Source:
+    """Where one of ours comes from in a table: as the map says, as it is usual there, or by its own name."""
+    found = table.columns
+    usual = table.usual.get(name, Source(name))
+    if name not in sources:
+        return Source(name) if name in found and name not in table.usual else usual
+    mapped = resolved(sources[name], found)
+    if mapped.column not in found and name == "t" and (usual.column in found):
+        return usual  # a clock of the same name is not in every file
+    return mapped
+
+
+def _series_of(
+    table: Table, held: Mapped, values: Mapping[str, Array], rows: Stamped, remarks: list[str]
+) -> dict[str, Series]:
+    """What a table has besides force; of a log whose clock began anew the longest part."""
+    names = [name for name in held if name in SERIES]
+    if not names:
+        return {}
+    parts = list(pairwise((0, *rows.cuts, rows.t.size)))
+    clocks = [parts[0]] if parts else []
+    for part in parts[1:]:  # where only the rate changed, the clock goes on
+        if rows.t[part[0]] > rows.t[part[0] - 1]:
+            clocks[-1] = (clocks[-1][0], part[1])
+        else:
+            clocks.append(part)
+    start, end = max(clocks, key=lambda part: part[1] - part[0])
+    if len(clocks) > 1:
+        remarks.append(f"{table.name}: of {', '.join(names)} the longest part is kept, for the clock begins anew")
+    chosen = rows.rows[start:end]
+    return {
+        name: Series(name, rows.t[start:end], values[name][chosen], f"{Path(table.name).name}: {held[name].column}")
+        for name in names
+    }
 
 
 def _values(table: Table, held: Mapped, remarks: list[str]) -> dict[str, Array]:
     """Return ours as numbers, and tell what is beyond all readings."""
     read = table.read({source.column for source in held.values()})
+    remarks += [f"{table.name}: {said}" for said in table.later()]
     values = {}
     for name, source in held.items():
-        values[name], beyond = numbers(read[source.column], source, name)
+        try:
+            values[name], beyond = numbers(read[source.column], source, name)
+        except ValueError:
+            if name in COLUMNS or len(held) == 1:
+                raise
+            values[name] = np.full(read[source.column].shape, np.nan)
+            remarks.append(f"{table.name}: column {brief(source.column)!r} holds no numbers: there is no {name}")
+            continue
         if beyond:
             most, what = (LATEST, "time") if name == "t" else (MOST_READ, "reading")
             remarks.append(f"{table.name}: {beyond} numbers of {name} are beyond ±{most:g} and count as no {what}")
     return values
 
 
-def _lacks(missing: Sequence[str], found: Sequence[str], named: Sequence[str] = ()) -> str:
+def _count(values: dict[str, Array], axes: Sequence[str], name: str, remarks: list[str]) -> None:
+    """Bring counts to m/s²: 1 g is the power of two that is next to the median of |f|."""
+    sizes = np.linalg.norm(np.column_stack([values[axis] for axis in axes]), axis=1)
+    middle = float(np.nanmedian(sizes))
+    counts = min(COUNTS, key=lambda each: abs(np.log(each / max(middle, 1e-9))))
+    if not 0.7 < middle / counts < 1.4:
+        raise ValueError(
+            f"the median of |f| is {middle:.4g} counts, and what 1 g is cannot be told: map fx=…*factor and so on"
+        )
+    for axis in axes:
+        values[axis] = values[axis] * (STANDARD_GRAVITY / counts)
+    remarks.append(f"{name}: counts are brought to m/s²: 1 g is taken to be {counts} counts, by the median of |f|")
+
+
+def _lacks(
+    missing: Sequence[str], found: Sequence[str], named: Sequence[str] = (), tables: Sequence[Table] = ()
+) -> str:
     what = f"has no column {', '.join(repr(brief(name)) for name in named)}" if named else f"lacks {', '.join(missing)}"
+    if any(not table.named for table in tables):
+        return (
+            f"{what}; it has no line of names, and {len(found)} columns: say which is which by their numbers, with "
+            f"--map t=1,fx=2,fy=3,fz=4 or as they stand"
+        )
     return f"{what}; it has {listed(found)}; say which is which with --map {','.join(f'{n}=…' for n in missing)}"
 
 
@@ -162,7 +253,7 @@ def _behind(before: Series, after: Series) -> Series:
 # -- joining ---------------------------------------------------------------------------------------------------------
 
 
-def _merged(pieces: list[Piece]) -> Array:
+def _merged(pieces: list[Piece]) -> tuple[Array, list[int], list[str]]:
     """Join pieces: those of the same axes one after the other, different axes at the times of fx."""
     groups: dict[tuple[str, ...], list[Piece]] = {}
     for piece in pieces:
@@ -172,14 +263,31 @@ def _merged(pieces: list[Piece]) -> Array:
         holding = [piece.name for piece in joined if axis in piece.force]
         if len(holding) > 1:
             raise ValueError(f"{axis} is found twice, in {holding[0]} and in {holding[1]}: say which with --map")
-    base = next(piece for piece in joined if "fx" in piece.force)
+    base = next(piece for axis in AXES for piece in joined if axis in piece.force)
     force = dict(base.force)
     for piece in joined:
         if piece is not base:
+            if _goes_back(piece) or _goes_back(base):
+                raise ValueError(
+                    f"the clock of {piece.name} or {base.name} begins anew: axes of two files cannot be joined"
+                )
             if piece.t[-1] < base.t[0] or piece.t[0] > base.t[-1]:
                 raise ValueError(f"{base.name} and {piece.name} share no time: map t=… to the same clock")
             force |= {axis: _brought(values, piece.t, base.t) for axis, values in piece.force.items()}
-    return np.column_stack([base.t, *(force[axis] for axis in AXES)])
+    remarks = []
+    for axis, values in force.items():
+        force[axis], said = unwrapped(values, axis)
+        remarks += said
+    return _table_of(Piece(base.name, base.t, force, {})), base.cuts, remarks
+
+
+def _goes_back(piece: Piece) -> bool:
+    return bool((np.diff(piece.t) <= 0.0).any())
+
+
+def _table_of(piece: Piece) -> Array:
+    """Return t, fx, fy, fz; an axis that is not there is NaN."""
+    return np.column_stack([piece.t, *(piece.force.get(axis, np.full(piece.t.size, np.nan)) for axis in AXES)])
 
 
 def _in_a_row(pieces: list[Piece]) -> Piece:
@@ -193,7 +301,12 @@ def _in_a_row(pieces: list[Piece]) -> Piece:
                 "with the same axes must follow each other"
             )
     force = {axis: np.concatenate([piece.force[axis] for piece in ordered]) for axis in ordered[0].force}
-    return Piece(", ".join(p.name for p in ordered), np.concatenate([piece.t for piece in ordered]), force, {})
+    cuts, before = [], 0
+    for piece in ordered:
+        cuts += [before + cut for cut in piece.cuts]
+        before += piece.t.size
+    names, t = ", ".join(piece.name for piece in ordered), np.concatenate([piece.t for piece in ordered])
+    return Piece(names, t, force, {}, cuts=cuts)
 
 
 def _brought(values: Array, t: Array, to: Array) -> Array:
@@ -226,14 +339,17 @@ def _check_rate(recording: Recording) -> None:
 
 
 def _check_numbers(force: Array) -> None:
-    """Refuse readings of which none has all axes."""
-    if not np.isfinite(force).all(axis=1).any():
+    """Refuse readings of which none has all axes that the log holds."""
+    held = np.isfinite(force)
+    if not held[:, held.any(axis=0)].all(axis=1).any() or not held.any():
         raise ValueError(f"no row holds numbers for all of {', '.join(AXES)}: map columns that do")
 
 
 def _check_unit(force: Array) -> None:
     """Refuse what looks like another unit than m/s²."""
     _check_numbers(force)
+    if not np.isfinite(force).any(axis=0).all():
+        return  # of one axis alone the rest may be anything
     sizes = np.linalg.norm(force, axis=1)
     middle = float(np.nanmedian(sizes))
     if LOOKS_LIKE_G[0] <= middle <= LOOKS_LIKE_G[1]:
@@ -249,5 +365,18 @@ def _check_unit(force: Array) -> None:
 
 def _remarks(readings: Array) -> list[str]:
     """Say how many readings lack a number."""
-    lacking = int(np.count_nonzero(~np.isfinite(readings[:, 1:]).all(axis=1)))
-    return [f"{lacking} readings lack an axis: the detector passes over them"] if lacking else []
+    held = np.isfinite(readings[:, 1:])
+    there = np.atleast_1d(held.any(axis=0))
+    said = []
+    if 0 < np.count_nonzero(there) < len(AXES):
+        absent = [axis for axis, is_there in zip(AXES, there.tolist(), strict=True) if not is_there]
+        said.append(f"the log holds no {', '.join(absent)}: one axis is enough for a detector that reads one")
+    if lacking := int(np.count_nonzero(~held[:, there].all(axis=1))):
+        said.append(f"{lacking} readings lack an axis: the detector passes over them")
+    same = np.all((readings[1:, 1:] == readings[:-1, 1:]) | ~held[1:], axis=1)
+    if (share := float(np.mean(same)) if same.size else 0.0) > SAMPLED_AND_HELD:
+        said.append(f"readings repeat: {share:.0%} of the rows are as those before, as of a sensor slower than the log")
+    rate = 1.0 / max(float(np.median(np.diff(readings[:, 0]))), 1e-9) if len(readings) > 1 else np.inf
+    if rate < SLOW:
+        said.append(f"{rate:.3g} readings a second are few: a stroke may lie between two of them")
+    return said

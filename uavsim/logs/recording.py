@@ -37,6 +37,7 @@ SERIES = {
 pressure height, attitude, velocity over ground, the log's own counts of clipped readings, satellites in use."""
 GAP = 3.0  # median intervals, beyond which readings are missing; as the detectors have it
 CLIPPED = 1.5 * STANDARD_GRAVITY  # m/s²; an extreme below is no end of a range
+SAMPLED_AND_HELD = 0.3  # share of rows that repeat those before them, from which a log holds each reading for some
 HELD = 3  # readings in a row that hold the extreme value to call it clipped
 
 
@@ -108,7 +109,9 @@ class Recording:
     series : mapping
         What else the log holds, by the names of `SERIES`.
     cuts : tuple of int
-        Rows at which a part begins whose clock began anew; none if the log is of one part.
+        Rows at which a part begins, whose clock began anew or whose rate is another; none if the log is of one part.
+    others : mapping
+        Readings of the log's other accelerometers, as `readings`, by the names of their messages.
     """
 
     files: tuple[str, ...]
@@ -117,6 +120,7 @@ class Recording:
     remarks: tuple[str, ...]
     series: Mapping[str, Series] = field(default_factory=dict)
     cuts: tuple[int, ...] = ()
+    others: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def parts(self) -> list[range]:
@@ -124,24 +128,47 @@ class Recording:
         return [range(*ends) for ends in pairwise((0, *self.cuts, len(self.readings)))]
 
     @property
+    def axes(self) -> tuple[str, ...]:
+        """Axes that the log holds."""
+        held = np.atleast_1d(np.isfinite(self.readings[:, 1:]).any(axis=0)).tolist()
+        return tuple(axis for axis, is_held in zip(AXES, held, strict=True) if is_held)
+
+    @property
     def rate(self) -> float:
         """Median rate, Hz."""
-        interval = float(np.median(np.diff(self.readings[:, 0])))
-        return 1.0 / interval if interval > 0.0 else np.inf
+        return self.rate_of(range(len(self.readings)))
+
+    def rate_of(self, part: range) -> float:
+        """Median rate of a part, Hz."""
+        step = np.diff(self.readings[part.start : part.stop, 0])
+        step = step[step > 0.0]
+        return 1.0 / float(np.median(step)) if step.size else np.inf
 
     @property
     def span(self) -> tuple[float, float]:
-        """First and last time, s."""
-        return float(self.readings[0, 0]), float(self.readings[-1, 0])
+        """Least and greatest time, s."""
+        return float(self.readings[:, 0].min()), float(self.readings[:, 0].max())
+
+    @property
+    def duration(self) -> float:
+        """Of all parts together, s."""
+        t = self.readings[:, 0]
+        return float(sum(t[part.stop - 1] - t[part.start] for part in self.parts))
 
     def gaps(self) -> list[Gap]:
-        """Where more than `GAP` median intervals lie between two readings."""
-        t = self.readings[:, 0]
-        rows = np.flatnonzero(np.diff(t) > GAP / self.rate * (1.0 + 1e-6))
-        return [Gap(float(t[i]), float(t[i + 1])) for i in rows]
+        """Where more than `GAP` median intervals of its part lie between two readings."""
+        found = []
+        for part in self.parts:
+            t = self.readings[part.start : part.stop, 0]
+            rows = np.flatnonzero(np.diff(t) > GAP / self.rate_of(part) * (1.0 + 1e-6))
+            found += [Gap(float(t[i]), float(t[i + 1])) for i in rows]
+        return found
 
     def clipping(self) -> list[Clipping]:
-        """Return the axes whose greatest or least value is held for `HELD` readings in a row."""
+        """Return the axes whose greatest or least value is held for `HELD` readings in a row.
+
+        Readings that repeat those before them in all axes are one: logs of a slow sensor hold each for some rows.
+        """
         found = (self._held(axis, sign) for axis in AXES for sign in (1.0, -1.0))
         return [clipped for clipped in found if clipped is not None]
 
@@ -151,7 +178,16 @@ class Recording:
             return None
         edges = np.diff(np.concatenate(([0], (f == level).astype(int), [0])))
         starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-        if (ends - starts).max() < HELD:
+        made = np.cumsum(self._new())  # readings up to each row
+        lengths = np.asarray(made[ends - 1] - made[starts] + 1)
+        if lengths.max() < HELD:
             return None
-        first = starts[np.argmax(ends - starts >= HELD)]
-        return Clipping(axis, sign * level, int((ends - starts).sum()), float(self.readings[first, 0]))
+        first = starts[np.argmax(lengths >= HELD)]
+        return Clipping(axis, sign * level, int(lengths.sum()), float(self.readings[first, 0]))
+
+    def _new(self) -> NDArray[np.bool_]:
+        """Which rows are a reading of their own: where most repeat those before them, only those that do not."""
+        force = self.readings[:, 1:]
+        same = np.all((force[1:] == force[:-1]) | np.isnan(force[1:]), axis=1)
+        held = np.count_nonzero(same) > SAMPLED_AND_HELD * same.size
+        return np.concatenate(([True], ~same if held else np.ones(same.size, bool)))

@@ -1,7 +1,7 @@
 """The launch detector run over a recording, from its first reading to its last."""
 
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
@@ -13,9 +13,10 @@ from uavsim import __version__
 from uavsim.failure import FAILED, PartError
 from uavsim.files import without_none
 from uavsim.flight import Flight, frame
-from uavsim.logs.recording import Array, Recording
+from uavsim.logs.recording import AXES, COLUMNS, Array, Recording
 from uavsim.onboard import launch
 from uavsim.onboard.launch.guarded import STATE
+from uavsim.onboard.launch.settings import kind_of
 from uavsim.plugins import plugged_in
 from uavsim.score_keys import FLIGHT, INSTALLATION, INTEGRITY, PHASES, PRESSURE, PRESSURES, no_airspeed
 
@@ -44,14 +45,15 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
         clipping, all detections. Its ``scenario`` says what was replayed, and does not fly.
     """
     rate = recording.rate
-    columns, detections, reason = _watch(lambda: _detector(settings, rate), recording)
+    used = launch.DetectorSettings() if settings is None else settings
+    check_axes(recording, used)
+    columns, detections, reason = _watch(used, recording)
     t, fx, fy, fz = recording.readings.T
     tables = {
         "accelerometer": frame("accelerometer", {"t": t, "fx": fx, "fy": fy, "fz": fz}),
         "detector": frame("detector", {"t": t[: columns["recognised"].size], **columns}),
     }
     events = [{"t": when, "event": "launch_detected"} for when in detections]
-    used = launch.DetectorSettings() if settings is None else settings
     about: dict[str, Any] = {
         "name": recording.files[0],
         "recording": {"files": list(recording.files), "map": recording.mapping, "rate": rate},
@@ -63,21 +65,30 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
     return Flight(about, tables, events, score)
 
 
-def _detector(settings: launch.DetectorSettings | None, rate: float) -> Any:
-    return launch.default(rate=rate) if settings is None else launch.build(settings, rate)
+def check_axes(recording: Recording, settings: launch.DetectorSettings) -> None:
+    """Refuse a log that lacks an axis which the detector reads; one of one axis reads no other."""
+    needed: tuple[str, ...] = AXES
+    if settings.axes != "any" and len(settings.axes) == 1 and kind_of(settings).ours:
+        needed = (f"f{settings.axes[0][1]}",)
+    if lacking := [axis for axis in needed if axis not in recording.axes]:
+        raise ValueError(
+            f"the detector reads {', '.join(needed)}, and the log holds no {', '.join(lacking)}: map it, or set "
+            "detector.axes to what there is"
+        )
 
 
-def _watch(build: Callable[[], Any], recording: Recording) -> tuple[dict[str, NDArray[Any]], list[float], str]:
+def _watch(settings: launch.DetectorSettings, recording: Recording) -> tuple[dict[str, NDArray[Any]], list[float], str]:
     """Return the detector's state at each reading, when it recognised a launch, and what ended it before the end.
 
-    Each part of the recording, whose clock began anew, has a detector of its own.
+    Each part of the recording, whose clock began anew or whose rate is another, has a detector of its own. An axis
+    that the log does not hold at all reads 0: a detector that reads it was refused.
     """
     state = {name: array("d") for name in STATE}
     recognised, detections, reason = array("b"), [], ""
     try:
         for part in recording.parts:
-            detector, resume = build(), np.inf
-            for t, fx, fy, fz in _rows(recording.readings[part.start : part.stop]):
+            detector, resume = launch.build(settings, recording.rate_of(part)), np.inf
+            for t, fx, fy, fz in _rows(filled(recording, part)):
                 if t >= resume:
                     detector.reset()
                     resume = np.inf
@@ -93,6 +104,16 @@ def _watch(build: Callable[[], Any], recording: Recording) -> tuple[dict[str, ND
         reason = str(failure)
     columns = {name: _column(np.array(state[name]), of_flags=name == "triggered") for name in STATE}
     return {**columns, "recognised": np.array(recognised, dtype=bool)}, detections, reason
+
+
+def filled(recording: Recording, part: range) -> Array:
+    """Return readings of a part, 0 for axes that the log does not hold at all."""
+    readings = recording.readings[part.start : part.stop]
+    absent = [COLUMNS.index(axis) for axis in AXES if axis not in recording.axes]
+    if absent:
+        readings = readings.copy()
+        readings[:, absent] = 0.0
+    return readings
 
 
 def _column(values: Array, *, of_flags: bool) -> NDArray[Any]:
@@ -137,7 +158,7 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
             **{phase: no_airspeed() for phase in PHASES},
         },
         "pressure": {name: dict.fromkeys(PRESSURE) for name in PRESSURES},
-        "flight": {**dict.fromkeys(FLIGHT), "duration": end - start},
+        "flight": {**dict.fromkeys(FLIGHT), "duration": recording.duration},
         "installation": dict.fromkeys(INSTALLATION),
         "requirements": [],
         "remarks": [],

@@ -5,19 +5,15 @@ A detector is built from its settings as for a flight, and hands over its rule a
 t_k = k / rate.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from itertools import repeat
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uavsim.onboard.interface import Detector
 from uavsim.onboard.launch import DetectorSettings, build
-from uavsim.onboard.launch.compiled import Forces, Loop
-from uavsim.onboard.plausible import MOST_FORCE
-
-Indices = NDArray[np.int64]
+from uavsim.onboard.launch.compiled import Forces
+from uavsim.onboard.launch.loops import Indices, loop_of, row_of
 
 FIRST_BLOCK = 4096  # samples that are looked at before more are
 
@@ -133,7 +129,7 @@ class BatchDetector:
         if force.ndim == 1 and len(self.columns) == 1:
             rows = [force if self._rows[0][0] == "+" else -force]
         elif force.ndim == 2 and force.shape[1] == 3:
-            rows = [_row(force, name) for name in self._rows]
+            rows = [row_of(force, name) for name in self._rows]
         else:
             raise ValueError(f"force must have the shape (n, 3), or (n,) where one axis is read, not {force.shape}")
         if len(rows) == 1:
@@ -141,42 +137,6 @@ class BatchDetector:
         return cast(Forces, np.stack(rows))
 
 
-def _row(force: Forces, name: str) -> Forces:
-    if name == "any":
-        size = np.abs(force)
-        return cast(Forces, np.where(size < MOST_FORCE, size, 0.0).max(axis=1))  # NaN is not below either
-    column = force[:, "xyz".index(name[1])]
-    return column if name[0] == "+" else -column
-
-
 def has_loop(settings: DetectorSettings, rate: float) -> bool:
     """Whether the detector that settings name has its rule as a loop."""
     return hasattr(build(settings, rate), "loop")
-
-
-def loop_of(detector: Any) -> tuple[Loop, Callable[..., int]]:
-    """Return a detector's loop and what runs it; numba is loaded here, if there is a loop."""
-    if not hasattr(detector, "loop"):
-        run = stepped(detector)
-        return Loop(run, (), rows=("+x", "+y", "+z")), run
-    found: Loop = detector.loop()
-    return found, found.function()
-
-
-def stepped(detector: Detector) -> Callable[..., int]:
-    """Return what steps a detector through arrays; its state is its own, the sample at which it begins resets it."""
-
-    def run(f: Forces, k0: int, rate: float, _p: object, _q: object, _x: object, y: Indices, out: Indices) -> int:
-        if k0 == y[0]:
-            detector.reset()
-        alarms = 0
-        for k, (fx, fy, fz) in enumerate(f.T.tolist(), k0):
-            if detector.step(k / rate, fx, fy, fz):
-                detector.reset()
-                out[alarms] = k
-                alarms += 1
-                if alarms == out.size:
-                    break
-        return alarms
-
-    return run
