@@ -248,9 +248,7 @@ def _share(readings: Array, head: Head) -> bool:
     return bool(head.total.t[0] < readings[-1, 0] and head.total.t[-1] > readings[0, 0])
 
 
-def cut(
-    recording: Recording, head: Head, rests: Rests, launches: list[float], settings: AirSettings
-) -> list[Span]:
+def cut(recording: Recording, head: Head, rests: Rests, launches: list[float], settings: AirSettings) -> list[Span]:
     """Cut a log into flights where the aircraft stands still, and find each one's tare."""
     first, last = recording.span
     between = [rest for rest in rests.still if rest.length >= BETWEEN and rest.start > first + BETWEEN]

@@ -7,7 +7,7 @@ said, is believed to be as large as it may be of usual parts; those numbers stan
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import inf, sqrt
+from math import inf
 
 import numpy as np
 
@@ -264,9 +264,7 @@ def _height(head: Head) -> float:
     return float(airdata.hypsometric_height(float(np.median(above)), ground, head.assumed_temperature))
 
 
-def _air(
-    scenario: Scenario, named: Sequence[str], gust: float | None, height: float
-) -> tuple[EstimatorSettings, str]:
+def _air(scenario: Scenario, named: Sequence[str], gust: float | None, height: float) -> tuple[EstimatorSettings, str]:
     """What is believed of air and aircraft, and where that is from: unless it is declared, what the log shows."""
     settings = believed_air(scenario)
     given = {key.removeprefix("estimator.aided.") for key in named if key.startswith("estimator.aided.")}

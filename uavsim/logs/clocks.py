@@ -1,13 +1,16 @@
 """Whether force and pressures of a log have the same clock, by a launch that both show.
 
-With F(t) = ∫(f_x − rest) dt the speed that the push has given, a head's difference is Δp = c + ½ρ F² after the launch
-as before it. So the template F² is moved over Δp until both agree best, by their coefficient of correlation; a parabola
-through the best three has the delay. Its standard deviation is that of a fit to noise,
+With F(t) = ∫(f_x − rest) dt the speed that the push has given, and w the headwind, a head's difference is
 
-    σ_τ = σ_r/(½ρ √Σ(dF²/dt)²)
+    Δp = c + ½ρ F² + ρ w F
 
-σ_r being what remains. What is found is the age of the pressure, its tubes and filters included, and the clocks' offset
-together. One launch cannot tell them apart.
+after the launch as before it. So both shapes are moved over Δp until a sum of them agrees best, by the coefficient of
+correlation R; a parabola through the best three has the delay. Its standard deviation is that of a fit to noise,
+
+    σ_τ = σ_r/√Σ(dΔp/dt)²
+
+σ_r being what remains, and of the slope what neither shape can make. What is found is the age of the pressure, its
+tubes and filters included, and the clocks' offset together. One launch cannot tell them apart.
 """
 
 from dataclasses import dataclass
@@ -24,6 +27,7 @@ ALIKE = 0.9  # of the correlation, from which on both show the same launch. By h
 UNIQUE = 0.03  # by which no other place may come as near. By hand
 FINE = 200.0  # Hz, of the grid on which a pressure is compared at the least
 DENSITY = (0.3, 3.0)  # of the factor between F² and Δp over ½ρ at sea level, beyond which it is another event
+STRONGEST = 25.0  # m/s, of a headwind at a launch
 RHO = 1.225  # kg/m³
 FAR = 3.0  # standard deviations of the delay that are told
 MOST_GRID = 4_000_000  # places that are compared
@@ -89,39 +93,43 @@ def _match(head: Head, t: Array, square: Array) -> Delay | None:
         return None
     grid = np.arange(total.t[0], total.t[-1], dt)
     pressure = np.interp(grid, total.t[keep], total.values[keep])
-    shape = np.interp(np.arange(t[0], t[-1], dt), t, square)
-    n = shape.size
+    square = np.interp(np.arange(t[0], t[-1], dt), t, square)
+    shapes = np.column_stack([square, np.sqrt(square)])
+    n = len(shapes)
     if grid.size < n:
         return None
-    likeness = _correlation(pressure, shape)
+    likeness, basis = _likeness(pressure, shapes)
     best = int(np.argmax(likeness))
     far = np.abs(np.arange(likeness.size) - best) * dt > BEFORE
     if likeness[best] < ALIKE or (far.any() and likeness[far].max() > likeness[best] - UNIQUE):
         return None
-    centred = shape - shape.mean()
-    factor = float(np.dot(centred, pressure[best : best + n])) / float(np.dot(centred, centred))
-    if not DENSITY[0] <= factor / (0.5 * RHO) <= DENSITY[1]:
+    seen = pressure[best : best + n] - pressure[best : best + n].mean()
+    left = seen - basis @ (basis.T @ seen)
+    factors, *_ = np.linalg.lstsq(shapes - shapes.mean(axis=0), seen, rcond=None)
+    wind = factors[1] / (2.0 * factors[0])
+    if not (DENSITY[0] <= factors[0] / (0.5 * RHO) <= DENSITY[1] and abs(wind) <= STRONGEST):
         return None
     shift = 0.0
     if 0 < best < likeness.size - 1:
         a, b, c = likeness[best - 1 : best + 2]
         shift = 0.5 * (a - c) / (a - 2.0 * b + c) if a - 2.0 * b + c < 0.0 else 0.0
-    left = pressure[best : best + n] - pressure[best : best + n].mean() - factor * centred
-    steep = factor * np.gradient(shape, dt)
+    steep = np.gradient(shapes @ factors, dt)
+    steep = steep - steep.mean()
+    steep = steep - basis @ (basis.T @ steep)
     each = max(1.0, head.total.period / dt)  # points of the grid that are one reading
     sd = sqrt(float(np.mean(left**2)) * each / float(np.dot(steep, steep)))
     return Delay(float(grid[best] - t[0] + shift * dt), sd, float(likeness[best]))
 
 
-def _correlation(signal: Array, shape: Array) -> Array:
-    """Coefficient of correlation of a shape with the signal from each place on."""
+def _likeness(signal: Array, shapes: Array) -> tuple[Array, Array]:
+    """R of the shapes with the signal from each place on, and the shapes' orthonormal basis."""
     from scipy.signal import fftconvolve  # late: half a second that a log without pressures does not need
 
-    n = shape.size
+    n = len(shapes)
     signal = signal - signal.mean()
-    centred = shape - shape.mean()
-    dot = fftconvolve(signal, centred[::-1], mode="valid")
+    basis, _ = np.linalg.qr(shapes - shapes.mean(axis=0))
+    explained = sum(fftconvolve(signal, one[::-1], mode="valid") ** 2 for one in basis.T)
     one, two = np.concatenate(([0.0], np.cumsum(signal))), np.concatenate(([0.0], np.cumsum(signal**2)))
-    variance = (two[n:] - two[:-n]) - (one[n:] - one[:-n]) ** 2 / n
+    whole = (two[n:] - two[:-n]) - (one[n:] - one[:-n]) ** 2 / n
     floor = 1e-9 * max(float(two[-1]), 1e-300)
-    return np.where(variance > floor, dot / np.sqrt(np.maximum(variance, floor) * float(np.dot(centred, centred))), 0.0)
+    return np.where(whole > floor, np.sqrt(explained / np.maximum(whole, floor)), 0.0), basis
