@@ -65,6 +65,8 @@ class CsvLayout:
         Columns that hold dates with a time, and times of day.
     remarks : tuple of str
         What is not usual.
+    line : float
+        Mean length of a line, characters.
     """
 
     encoding: str
@@ -78,6 +80,7 @@ class CsvLayout:
     dates: frozenset[int]
     clocks: frozenset[int]
     remarks: tuple[str, ...]
+    line: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,8 +273,9 @@ def _with_numbers(encoding: str, lines: Sequence[_Line], data: Sequence[_Line], 
     dates = frozenset(i for i in range(width) if _holds(rows, i, DATE))
     clocks = frozenset(i for i in range(width) if _holds(rows, i, CLOCK))
     named, said = names is not None, tuple(remarks)
+    line = (data[-1].start - start) / max(1, len(data) - first - 1)
     return CsvLayout(
-        encoding, best.separator, decimal, found, named, units, max(width, count), start, dates, clocks, said
+        encoding, best.separator, decimal, found, named, units, max(width, count), start, dates, clocks, said, line
     )
 
 

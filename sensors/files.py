@@ -18,7 +18,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-LARGEST = 1_000_000_000  # B, of a file
+LARGEST = 1_000_000_000  # B, of a file that is read as a whole
+LONGEST = 1_000_000_000_000  # B, of one that is read in parts
 UNPACKED = 500_000_000  # B, of what a packed one holds; it is kept in memory
 DICTIONARY = 128 * 2**20  # B, that unpacking xz may take; its strongest setting takes 65 MB
 HEAD = 512  # B by which formats are told apart
@@ -47,8 +48,14 @@ class Held:
         return self.path.open("rb") if self.unpacked is None else io.BytesIO(self.unpacked)
 
     def content(self) -> bytes:
-        """All of it."""
+        """All of it; ValueError, one line, if that is too much."""
+        _check_whole(self.size)
         return self.path.read_bytes() if self.unpacked is None else self.unpacked
+
+    @property
+    def size(self) -> int:
+        """B, unpacked."""
+        return self.path.stat().st_size if self.unpacked is None else len(self.unpacked)
 
     def first(self, size: int) -> bytes:
         """Return the first bytes, not more than `size`."""
@@ -100,8 +107,16 @@ def _check(found: os.stat_result) -> None:
         raise ValueError("there is no such file, but a folder of that name")
     if not stat.S_ISREG(found.st_mode):
         raise ValueError("is a pipe, a device or a socket: write what it gives to a file, and name that")
-    if found.st_size > LARGEST:
-        raise ValueError(f"has {found.st_size / 1e9:.3g} GB; at most {LARGEST / 1e9:g} GB are read")
+    if found.st_size > LONGEST:
+        raise ValueError(f"has {found.st_size / 1e9:.3g} GB; at most {LONGEST / 1e9:g} GB are read")
+
+
+def _check_whole(size: int) -> None:
+    if size > LARGEST:
+        raise ValueError(
+            f"has {size / 1e9:.3g} GB; of its kind at most {LARGEST / 1e9:g} GB are read (text, Parquet and Feather "
+            "may have more, for they are read in parts)"
+        )
 
 
 def is_binary(head: bytes) -> bool:
@@ -169,6 +184,7 @@ def _packing(head: bytes) -> Unpack | None:
 
 
 def _unpacked(path: Path, unpack: Unpack) -> bytes:
+    _check_whole(path.stat().st_size)
     try:
         with path.open("rb") as file:
             content = unpack(file)

@@ -5,7 +5,7 @@ Only columns that are asked for are kept, as numbers: NaN where there is somethi
 
 import re
 from codecs import getincrementaldecoder
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, Protocol
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MOST_ROWS = 10_000_000  # in which a detector runs with 2 GB of memory
-MOST_PACKED = 1_000_000_000  # B, of the columns of a Parquet file that are asked for, when unpacked
+MOST_PACKED = 1_000_000_000  # B, of the columns of a Parquet file's group of rows that are asked for, when unpacked
 BLOCK = 4_000_000  # B of a text file, read at once
 MOST_LINE = 16_000_000  # B
 BATCH = 100_000  # rows of a Parquet file, read at once
+ROW = 24  # B of a row of a Feather file, by which its rows are guessed
 LONGEST_NAME = 60  # characters of a name that are shown
 LONGEST_REASON = 200  # characters of what a library says
 REMARK = re.compile(rb"(?:(?<=[\r\n])|^|(?<=[ \t]))[ \t]*#[^\r\n]*")
@@ -52,8 +53,16 @@ class TableFile(Protocol):
     def read(self, columns: Collection[str]) -> dict[str, Array]:
         """Return columns of it as numbers; ValueError, one line, if that cannot be."""
 
-    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
-        """Yield the same by so many rows, of which there may be any number."""
+    @property
+    def rows(self) -> int:
+        """How many rows it has, more or less."""
+
+    @property
+    def share(self) -> float:
+        """How much of it `batches` has passed, 0 to 1."""
+
+    def batches(self, columns: Collection[str], only: Container[int] | None = None) -> Iterator[dict[str, Array]]:
+        """Yield the same some rows at a time, of which there may be any number; `only` those batches, from 0 on."""
 
 
 def table_of(held: Held) -> TableFile:
@@ -89,6 +98,8 @@ class CsvTable:
         self.layout = layout_of(held)
         self.names = self.layout.names
         self._long = self._short = self._zeros = 0
+        self._places: list[tuple[int, int]] = []  # of the blocks in the file, once they are known
+        self.share = 0.0
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -102,38 +113,60 @@ class CsvTable:
             said.append(f"{self._zeros} zero bytes are passed over")
         return tuple(said)
 
+    @property
+    def rows(self) -> int:
+        """How many rows it has, by the length of the first ones."""
+        return int(self._held.size / max(1.0, self.layout.line))
+
     def read(self, columns: Collection[str]) -> dict[str, Array]:
         """Return columns of it as numbers."""
         return _joined(self.batches(columns), columns)
 
-    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+    def batches(self, columns: Collection[str], only: Container[int] | None = None) -> Iterator[dict[str, Array]]:
         """Yield columns of it as numbers, a block of lines at a time."""
         places = {name: self.names.index(name) for name in columns}
-        for block in self._blocks():
-            yield self._fast(block, places) or self._slowly(block, places)
+        for i, block in self._some(only) if only is not None and self._places else enumerate(self._blocks()):
+            if only is None or i in only:
+                yield self._fast(block, places) or self._slowly(block, places)
+
+    def _some(self, only: Container[int]) -> Iterator[tuple[int, bytes]]:
+        """Yield blocks whose places are known from before."""
+        with self._held.open() as file:
+            for i, (start, size) in enumerate(self._places):
+                if i in only:
+                    file.seek(start)
+                    yield i, self._plain(file.read(size))
 
     def _blocks(self) -> Iterator[bytes]:
         """Yield lines of numbers in UTF-8, whole ones, without comments."""
         layout = self.layout
         decode = None if layout.encoding.startswith("utf-8") else getincrementaldecoder(layout.encoding)("replace")
         skip, rest, marked = layout.start, b"", layout.encoding == "utf-8-sig"
+        places: list[tuple[int, int]] = []
+        passed, whole = 0, self._held.size
         with self._held.open() as file:
             while True:
                 raw = file.read(BLOCK)
+                self.share = file.tell() / whole
                 text = raw if decode is None else decode.decode(raw, final=not raw).encode("utf-8", "replace")
                 if marked:
                     text, marked = text.removeprefix(b"\xef\xbb\xbf"), False
+                    passed = len(raw) - len(text)
                 rest += text
                 if skip and (len(rest) >= 4 * LONGEST_HEAD or not raw):
-                    rest, skip = _behind(rest, skip), 0
+                    behind = _behind(rest, skip)
+                    passed, rest, skip = passed + len(rest) - len(behind), behind, 0
                 end = len(rest) if not raw else max(rest.rfind(b"\n"), rest.rfind(b"\r")) + 1
                 if end and not skip:
+                    places.append((passed, end))
                     yield self._plain(rest[:end])
-                    rest = rest[end:]
+                    passed, rest = passed + end, rest[end:]
                 if len(rest) > MOST_LINE:
                     raise ValueError(f"has a line of more than {MOST_LINE // 10**6} MB")
                 if not raw:
-                    return
+                    break
+        if decode is None:
+            self._places = places
 
     def _plain(self, block: bytes) -> bytes:
         """Return lines without comments and zeros, blanks between values made one."""
@@ -261,12 +294,12 @@ class ParquetTable:
     """A Parquet file; what pandas wrote of an index into it is not believed, and an index that is a column is one."""
 
     def __init__(self, held: Held) -> None:
-        self._held = held
+        self._held, self.share = held, 0.0
         with _parquet_understood(), self._opened() as file:
             columns = file.metadata.num_columns
             if columns > MOST_COLUMNS:
                 raise ValueError(f"has {columns} columns; at most {MOST_COLUMNS} are read")
-            self._rows = file.metadata.num_rows
+            self.rows: int = file.metadata.num_rows
             self._schema = file.schema_arrow
             self.names: tuple[str, ...] = tuple(self._schema.names)
 
@@ -277,15 +310,19 @@ class ParquetTable:
         self._check_rows()
         return _joined(self.batches(columns), columns)
 
-    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+    def batches(self, columns: Collection[str], only: Container[int] | None = None) -> Iterator[dict[str, Array]]:
         """Yield columns of it as numbers, some rows at a time."""
+        rows = 0
         with _parquet_understood():
-            for batch in self._batches(columns):
-                yield {name: _floats(batch.column(name)) for name in columns}
+            for i, batch in enumerate(self._batches(columns)):
+                rows += batch.num_rows
+                self.share = rows / max(1, self.rows)
+                if only is None or i in only:
+                    yield {name: _floats(batch.column(name)) for name in columns}
 
     def _check_rows(self) -> None:
-        if self._rows > MOST_ROWS:
-            raise _too_many(str(self._rows))
+        if self.rows > MOST_ROWS:
+            raise _too_many(str(self.rows))
 
     def frame(self, columns: Collection[str], texts: Collection[str] = ()) -> "pd.DataFrame":
         """Return columns of it as pandas has them: numbers, flags and, where they may be, texts."""
@@ -306,29 +343,23 @@ class ParquetTable:
         text = [name for name in columns if self._is_written(name)]
         with self._opened(read_dictionary=text if texts else None) as file:
             self._check_size(file.metadata, set(columns))
-            rows = 0
-            for batch in file.iter_batches(BATCH, columns=list(columns)):
-                rows += batch.num_rows
-                if rows > MOST_ROWS:
-                    raise _too_many(f"more than {MOST_ROWS}")
-                yield batch
+            yield from file.iter_batches(BATCH, columns=list(columns), use_threads=False)
 
     def _is_written(self, name: str) -> bool:
         return _is_written(self._schema, name)
 
     @staticmethod
     def _check_size(metadata: "pq.FileMetaData", columns: set[str]) -> None:
-        size = 0
         for i in range(metadata.num_row_groups):
-            group = metadata.row_group(i)
+            size, group = 0, metadata.row_group(i)
             for j in range(group.num_columns):
                 column = group.column(j)
                 if column.path_in_schema in columns:
                     size += column.total_uncompressed_size
-        if size > MOST_PACKED:
-            raise ValueError(
-                f"has {size / 1e9:.3g} GB in the columns needed; at most {MOST_PACKED / 1e9:g} GB are read"
-            )
+            if size > MOST_PACKED:
+                raise ValueError(
+                    f"has {size / 1e9:.3g} GB in the columns needed; at most {MOST_PACKED / 1e9:g} GB are read at once"
+                )
 
     @contextmanager
     def _opened(self, **options: Any) -> "Iterator[pq.ParquetFile]":
@@ -344,10 +375,11 @@ class FeatherTable:
     remarks: tuple[str, ...] = ()
 
     def __init__(self, held: Held) -> None:
-        self._held = held
+        self._held, self.share = held, 0.0
         with _parquet_understood("Feather"), self._opened() as file:
             self._schema = file.schema
             self._count = file.num_record_batches
+            self.rows = held.size // ROW
         self.names: tuple[str, ...] = tuple(self._schema.names)
         if len(self.names) > MOST_COLUMNS:
             raise ValueError(f"has {len(self.names)} columns; at most {MOST_COLUMNS} are read")
@@ -356,17 +388,21 @@ class FeatherTable:
         """Return columns of it as numbers."""
         return _joined(self.batches(columns), columns)
 
-    def batches(self, columns: Collection[str]) -> Iterator[dict[str, Array]]:
+    def batches(self, columns: Collection[str], only: Container[int] | None = None) -> Iterator[dict[str, Array]]:
         """Yield columns of it as numbers, some rows at a time."""
         for name in columns:
             _is_written(self._schema, name)
         places = {name: self.names.index(name) for name in columns}
         with _parquet_understood("Feather"), self._opened(sorted(places.values())) as file:
+            number = 0
             for i in range(self._count):
                 batch = file.get_batch(i)
                 for first in range(0, batch.num_rows, BATCH):
-                    some = batch.slice(first, BATCH)
-                    yield {name: _floats(some.column(name)) for name in places}
+                    if only is None or number in only:
+                        some = batch.slice(first, BATCH)
+                        yield {name: _floats(some.column(name)) for name in places}
+                    number += 1
+                self.share = (i + 1) / self._count
 
     @contextmanager
     def _opened(self, places: list[int] | None = None) -> "Iterator[pa.ipc.RecordBatchFileReader]":

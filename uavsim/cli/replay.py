@@ -2,12 +2,16 @@
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from uavsim.cli.common import NoPlots, Out, Overwrite, Plugin, folder, plotter, plug_in, user_input
 from uavsim.cli.printed import Json, document
+
+if TYPE_CHECKING:
+    from uavsim.flight import Flight
+    from uavsim.logs import Recording
 
 
 def replay(
@@ -24,6 +28,9 @@ def replay(
     noise: Annotated[
         str | None, typer.Option("--noise", metavar="NAME=SD,...", help="Of a log's reading, as p_total=2.4,fx=0.5.")
     ] = None,
+    all_launches: Annotated[
+        bool, typer.Option("--all-launches", help="Cut a log into its flights, and replay each by itself.")
+    ] = False,
     out: Out = None,
     plugin: Plugin = None,
     no_plots: NoPlots = False,
@@ -41,8 +48,14 @@ def replay(
     """
     plug_in(plugin)
     if len(logs) == 1 and _is_flight(logs[0]):
-        if mapping is not None or settings or noise is not None:
-            option = "--map" if mapping is not None else "--set" if settings else "--noise"
+        if mapping is not None or settings or noise is not None or all_launches:
+            given = {
+                "--map": mapping is not None,
+                "--set": settings,
+                "--noise": noise is not None,
+                "--all-launches": True,
+            }
+            option = next(name for name, there in given.items() if there)
             raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
         _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
     else:
@@ -52,6 +65,7 @@ def replay(
             settings or [],
             noise,
             out,
+            all_launches=all_launches,
             plots=not no_plots,
             overwrite=overwrite,
             as_json=as_json,
@@ -99,11 +113,13 @@ def _replay_log(
     noise: str | None,
     out: Path | None,
     *,
+    all_launches: bool,
     plots: bool,
     overwrite: bool,
     as_json: bool,
 ) -> None:
-    from uavsim.logs import read_log, replay_log
+    from uavsim.cli.replay_in_lots import in_lots
+    from uavsim.logs import is_long, read_log, replay_log
     from uavsim.logs.aired import with_airspeed
     from uavsim.logs.airspeed import air_settings
     from uavsim.views import documents, terminal
@@ -111,16 +127,24 @@ def _replay_log(
 
     with user_input():
         air = air_settings(settings, noise)
-        recording = read_log(logs, mapping)
+        in_parts = all_launches or is_long(logs)
+        recording = None if in_parts else read_log(logs, mapping)
     detector = air.scenario.detector if any(given.strip().startswith("detector.") for given in settings) else None
+
+    def made(recording: "Recording") -> "Flight":
+        return with_airspeed(replay_log(recording, detector), recording, air)
 
     def draw(folder: Path) -> None:
         view.save_plot(replayed, folder / "plots")
 
     with folder(out, f"{logs[0].stem}-replay", overwrite=overwrite) as place:
-        with user_input(f"{logs[0]}: "):  # a detector may not fit the log's rate
-            replayed = with_airspeed(replay_log(recording, detector), recording, air)
-        replayed.write(place.folder, draw if plots else None)
+        with user_input(f"{logs[0]}: " if recording else ""):  # a detector may not fit the log's rate
+            if recording is None:
+                replayed = in_lots(logs, mapping, detector, made, place.folder, all_launches=all_launches, plots=plots)
+            else:
+                replayed = made(recording)
+        if recording is not None:
+            replayed.write(place.folder, draw if plots else None)
     if as_json:
         document(documents.flight(replayed, place.target))
         return

@@ -9,8 +9,25 @@ The detector is that of the packaged scenarios, built for the log's median rate 
 is not known of a recording: the score holds the detections, and null for whatever needs the truth.
 """
 
+from uavsim.logs.long import LongReplay, replay_long
 from uavsim.logs.mapping import read_log
 from uavsim.logs.recording import SERIES, Clipping, Gap, Recording, Series
-from uavsim.logs.replay import PAUSE, replay_log
+from uavsim.logs.replay import replay_log
+from uavsim.logs.stream import Stream, chunks, is_long
+from uavsim.logs.watch import PAUSE
 
-__all__ = ["PAUSE", "SERIES", "Clipping", "Gap", "Recording", "Series", "read_log", "replay_log"]
+__all__ = [
+    "PAUSE",
+    "SERIES",
+    "Clipping",
+    "Gap",
+    "LongReplay",
+    "Recording",
+    "Series",
+    "Stream",
+    "chunks",
+    "is_long",
+    "read_log",
+    "replay_log",
+    "replay_long",
+]

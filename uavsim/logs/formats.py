@@ -26,7 +26,6 @@ from uavsim.logs.ulog import read_ulog
 
 Mapped = Mapping[str, Source]
 Read = Callable[[Collection[str]], Mapping[str, Array]]
-Batches = Callable[[Collection[str]], Iterator[Mapping[str, Array]]]
 
 MESSAGE = re.compile(r"[-+]?\s*(\w+)(?:\[(\d{1,9})\])?\.")  # as in sensor_accel[1].x: message, instance
 BLACKBOX = b"H Product:Blackbox"  # with which a raw blackbox log begins
@@ -45,8 +44,6 @@ class Table:
         Which there are.
     read : callable
         Returns columns as numbers; ValueError if they are none.
-    batches : callable or None
-        Yields the same some rows at a time, if it can.
     usual : mapping
         What ours are called if no map says so.
     remarks : tuple of str
@@ -60,6 +57,8 @@ class Table:
         Columns that hold times of day.
     named : bool
         Whether the columns have names.
+    file : TableFile or None
+        The file, if it is a table.
     """
 
     name: str
@@ -67,12 +66,12 @@ class Table:
     read: Read
     usual: Mapped
     remarks: tuple[str, ...] = ()
-    batches: Batches | None = None
     later: Callable[[], tuple[str, ...]] = tuple
     label: str = ""
     counts: bool = False
     of_day: frozenset[str] = field(default_factory=frozenset)
     named: bool = True
+    file: TableFile | None = None
 
 
 @contextmanager
@@ -101,6 +100,12 @@ def read_tables(path: Path, sources: Mapped) -> list[Table]:
         return [_table(path, held, sources)]
 
 
+def table_in(held: Held) -> TableFile | None:
+    """Return the table that a file is; None if it is an autopilot's log."""
+    autopilots = held.head.startswith((BLACKBOX, b"ULog", HEAD, TEXT)) or tlog.is_tlog(held.first(tlog.ENOUGH))
+    return None if autopilots else table_of(held)
+
+
 def _table(path: Path, held: Held, sources: Mapped) -> Table:
     """Return a file that is a table."""
     table: TableFile = table_of(held)
@@ -115,11 +120,11 @@ def _table(path: Path, held: Held, sources: Mapped) -> Table:
         table.read,
         guessed.sources,
         guessed.remarks,
-        table.batches,
         lambda: table.remarks,
         counts=guessed.counts,
         of_day=clocks,
         named=has_names,
+        file=table,
     )
 
 

@@ -59,8 +59,18 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
     ValueError
         One line that names the file, what was found and what to map.
     """
-    sources = {} if mapping is None else parse_map(mapping, (*COLUMNS, *SERIES))
-    tables = [table for path in paths for table in read_tables(path, sources)]
+    sources = sources_of(mapping)
+    return recording_of(paths, mapping, [table for path in paths for table in read_tables(path, sources)])
+
+
+def sources_of(mapping: str | None) -> dict[str, Source]:
+    """Return what a map says."""
+    return {} if mapping is None else parse_map(mapping, (*COLUMNS, *SERIES))
+
+
+def recording_of(paths: Sequence[Path], mapping: str | None, tables: Sequence[Table]) -> Recording:
+    """Return the recording that tables are; see `read_log`."""
+    sources = sources_of(mapping)
     remarks = [f"{table.name}: {said}" for table in tables for said in table.remarks]
     pieces = []
     for table in tables:
@@ -72,7 +82,7 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
             pieces.append(piece)
     names = tuple(path.name for path in paths)
     with named(", ".join(map(str, paths))):
-        _check_found(sources, tables)
+        check_found(sources, tables)
         others = {piece.other: _table_of(piece) for piece in pieces if piece.other}
         pieces = [piece for piece in pieces if not piece.other]
         series = _series(pieces)
@@ -81,7 +91,7 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
             missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
             raise ValueError(_lacks(missing, [name for table in tables for name in table.columns], tables=tables))
         factors = {axis: factor for piece in pieces for axis, factor in piece.factors.items()}
-        _check_factors(factors)
+        check_factors(factors)
         readings, cuts, unwrapped = _merged(pieces)
         remarks += unwrapped
         if len(readings) > MOST_ROWS:
@@ -91,14 +101,14 @@ def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
         _check_rate(recording)
         _check_numbers(readings[:, 1:])
         if not any(factors.values()):  # else somebody has thought of units
-            _check_unit(readings[:, 1:])
+            check_unit(readings[:, 1:])
     return recording
 
 
 def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) -> Piece | None:
     """Take ours out of a table; None if it has none of the axes, or no time."""
     found = table.columns
-    wanted = {name: _source(name, table, sources) for name in (*COLUMNS, *SERIES)}
+    wanted = {name: source_of(name, table, sources) for name in (*COLUMNS, *SERIES)}
     held = {name: source for name, source in wanted.items() if source.column in found}
     axes = [axis for axis in AXES if axis in held]
     lacking = [name for name in COLUMNS if name in sources and name not in held]
@@ -113,7 +123,8 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
     values = _values(table, held, remarks)
     t = values.pop("t")
     if table.counts and axes:
-        _count(values, axes, table.name, remarks)
+        scale = one_g(np.column_stack([values[axis] for axis in axes]), table.name, remarks)
+        values |= {axis: values[axis] * scale for axis in axes}
     try:
         clock = held["t"]
         columns = np.column_stack([*values.values()])
@@ -123,22 +134,22 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
     where = f"{table.name}: {table.label}: " if table.label else f"{table.name}: "
     remarks += [f"{where}{said}" for said in rows.remarks]
     stated = {axis: "*" in sources[axis].column[len(held[axis].column) :] for axis in axes if axis in sources}
-    known = not any(axis in sources for axis in axes) and (table.counts or _is_scaled(held, axes))
+    known = not any(axis in sources for axis in axes) and (table.counts or is_scaled(held, axes))
     factors = {axis: held[axis].factor if stated.get(axis) or known else None for axis in axes}
     force = {axis: values[axis][rows.rows] for axis in axes}
     if len(force) == len(AXES) and not any(factors.values()):
-        _check_unit(np.column_stack([force[axis] for axis in AXES]))
+        check_unit(np.column_stack([force[axis] for axis in AXES]))
     series = _series_of(table, held, values, rows, remarks)
     other = table.label.removeprefix(OTHER) if table.label.startswith(OTHER) else ""
     return Piece(table.name, rows.t, force, factors, series, rows.cuts, other)
 
 
-def _is_scaled(held: Mapped, axes: Sequence[str]) -> bool:
+def is_scaled(held: Mapped, axes: Sequence[str]) -> bool:
     """Whether the axes have a unit that was known without a map."""
     return any(abs(held[axis].factor) != 1.0 or held[axis].offset for axis in axes)
 
 
-def _check_found(sources: Mapped, tables: Sequence[Table]) -> None:
+def check_found(sources: Mapped, tables: Sequence[Table]) -> None:
     """Refuse a map that names columns which no table has."""
     held = {
         ours
@@ -151,7 +162,7 @@ def _check_found(sources: Mapped, tables: Sequence[Table]) -> None:
         raise ValueError(_lacks(lacking, found, [sources[ours].column for ours in lacking], tables))
 
 
-def _source(name: str, table: Table, sources: Mapped) -> Source:
+def source_of(name: str, table: Table, sources: Mapped) -> Source:
     """Where one of ours comes from in a table: as the map says, as it is usual there, or by its own name."""
     found = table.columns
     usual = table.usual.get(name, Source(name))
@@ -207,18 +218,17 @@ def _values(table: Table, held: Mapped, remarks: list[str]) -> dict[str, Array]:
     return values
 
 
-def _count(values: dict[str, Array], axes: Sequence[str], name: str, remarks: list[str]) -> None:
-    """Bring counts to m/s²: 1 g is the power of two that is next to the median of |f|."""
-    sizes = np.linalg.norm(np.column_stack([values[axis] for axis in axes]), axis=1)
-    middle = float(np.nanmedian(sizes))
+def one_g(force: Array, name: str, remarks: list[str]) -> float:
+    """Return what one count is, m/s²: 1 g is the power of two that is next to the median of |f|."""
+    sizes = np.sqrt(np.nansum(force**2, axis=1))
+    middle = float(np.median(sizes)) if sizes.size else 0.0
     counts = min(COUNTS, key=lambda each: abs(np.log(each / max(middle, 1e-9))))
     if not 0.7 < middle / counts < 1.4:
         raise ValueError(
             f"the median of |f| is {middle:.4g} counts, and what 1 g is cannot be told: map fx=…*factor and so on"
         )
-    for axis in axes:
-        values[axis] = values[axis] * (STANDARD_GRAVITY / counts)
     remarks.append(f"{name}: counts are brought to m/s²: 1 g is taken to be {counts} counts, by the median of |f|")
+    return STANDARD_GRAVITY / counts
 
 
 def _lacks(
@@ -319,7 +329,7 @@ def _brought(values: Array, t: Array, to: Array) -> Array:
     return brought
 
 
-def _check_factors(factors: Mapping[str, float | None]) -> None:
+def check_factors(factors: Mapping[str, float | None]) -> None:
     """Refuse axes of different units."""
     sizes = {axis: abs(1.0 if factor is None else factor) for axis, factor in factors.items()}
     if max(sizes.values()) > UNEQUAL * min(sizes.values()):
@@ -345,7 +355,7 @@ def _check_numbers(force: Array) -> None:
         raise ValueError(f"no row holds numbers for all of {', '.join(AXES)}: map columns that do")
 
 
-def _check_unit(force: Array) -> None:
+def check_unit(force: Array) -> None:
     """Refuse what looks like another unit than m/s²."""
     _check_numbers(force)
     if not np.isfinite(force).any(axis=0).all():

@@ -14,6 +14,7 @@ from uavsim.failure import FAILED, PartError
 from uavsim.files import without_none
 from uavsim.flight import Flight, frame
 from uavsim.logs.recording import AXES, COLUMNS, Array, Recording
+from uavsim.logs.watch import PAUSE
 from uavsim.onboard import launch
 from uavsim.onboard.launch.guarded import STATE
 from uavsim.onboard.launch.settings import kind_of
@@ -21,7 +22,6 @@ from uavsim.plugins import plugged_in
 from uavsim.score_keys import FLIGHT, INSTALLATION, INTEGRITY, PHASES, PRESSURE, PRESSURES, no_airspeed
 
 LOT = 50_000  # readings that are plain numbers at once
-PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
 
 
 def replay_log(recording: Recording, settings: launch.DetectorSettings | None = None) -> Flight:

@@ -42,12 +42,15 @@ class Stamped:
     cuts : list of int
         Places in both at which a part begins.
     remarks : list of str
+    added : float
+        What the last stamp was raised by, s, for the counter had wrapped.
     """
 
     rows: Rows
     t: Array
     cuts: list[int] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
+    added: float = 0.0
 
 
 class BackwardsError(ValueError):
@@ -112,6 +115,7 @@ def _unwrap(of: Stamped, step: float, *, of_day: bool) -> None:
                 of.remarks.append(f"the clock wraps at {name} ({turn:.10g} s) after {before:.10g} s and is unwrapped")
                 break
     of.t = of.t + added
+    of.added = float(added[-1])
 
 
 def _is_whole(t: Array) -> bool:
