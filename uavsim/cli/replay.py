@@ -49,13 +49,8 @@ def replay(
     plug_in(plugin)
     if len(logs) == 1 and _is_flight(logs[0]):
         if mapping is not None or settings or noise is not None or all_launches:
-            given = {
-                "--map": mapping is not None,
-                "--set": settings,
-                "--noise": noise is not None,
-                "--all-launches": True,
-            }
-            option = next(name for name, there in given.items() if there)
+            given = {"--map": mapping is not None, "--set": bool(settings), "--noise": noise is not None}
+            option = next((name for name, there in given.items() if there), "--all-launches")
             raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
         _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
     else:

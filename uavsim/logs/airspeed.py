@@ -23,7 +23,7 @@ import numpy as np
 
 from uavsim.cosim import Believed, Onboard
 from uavsim.failure import PartError
-from uavsim.logs.beliefs import KEYS, Noise, believed_of_log, known_age, parse_noise
+from uavsim.logs.beliefs import KEYS, Noise, believed_of_log, known_age, parse_noise, untared
 from uavsim.logs.clocks import Delay, delay_of
 from uavsim.logs.head import Head, head_of, lacking
 from uavsim.logs.quiet import Rests, rests_of
@@ -36,7 +36,7 @@ FLIES, HOLDS = (
     9.0,
     3.0,
 )  # m/s and s: no fixed wing flies slower, no gust and no breath into a pitot lasts so long. By hand
-BETWEEN = 5.0  # s at rest that part two flights. By hand
+BETWEEN = 3.0  # s at rest that part two flights. By hand
 KEPT = 60.0  # s of rest before a launch that are replayed; a flight computer has nothing from an hour of standing about
 
 
@@ -166,7 +166,9 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
     for span in spans:
         said.append(_told_of(span))
         told = belief.told
-        if span.tare is not None:
+        if span.tare is None:
+            told = replace(told, noise=untared(told.noise, head))
+        else:
             told = replace(told, tare=span.tare.window, noise=replace(told.noise, covered=span.tare.still))
         onboard = OfLog(settings.scenario, told, Recognised([at for at in launches if span.start <= at < span.end]))
         try:

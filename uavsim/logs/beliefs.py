@@ -7,7 +7,7 @@ said, is believed to be as large as it may be of usual parts; those numbers stan
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import hypot, inf
 
 import numpy as np
 
@@ -36,6 +36,8 @@ WARMTH, BOARD = 10.0, 5.0  # K: of a temperature that is assumed; of one that is
 ABSOLUTE_PAIR, ONE_SENSOR = 60.0, 30.0  # Pa: two barometers that nobody has tared; a differential sensor
 STATIC_OFFSET = 200.0  # Pa: 17 m, a barometer's absolute accuracy
 HEIGHT_OFFSET = 5000.0  # Pa: 400 m, where a height is above a field that nobody has named
+LEARNT = 3.0  # Pa, of the offset of a pair that is not tared, that may be learnt in flight. By hand
+MOST_SHARE = 0.5  # of the impact pressure, that the rest of it counts as
 WALK = 0.05  # Pa/√s, of the difference: 0.5 Pa in a hundred seconds. A log's rest cannot tell it from wind
 GUST = 1.0  # m/s, of turbulence that nobody has declared and that the log does not show: σ_u of a moderate wind
 OPEN_WIND = 3.0  # m/s, in which aircraft are launched, where nobody has declared one: a gentle breeze
@@ -243,6 +245,20 @@ def _force_noise(recording: Recording) -> float:
     t, force = recording.readings[:, 0], recording.readings[:, 1]
     good = np.isfinite(force)
     return noise_throughout(Channel("fx", t[good], force[good], ""), SHAKEN)
+
+
+def untared(noise: NoiseModel, head: Head) -> NoiseModel:
+    """What is believed of a pair that no rest has tared.
+
+    Its offset could be learnt in flight, by how the pressure follows the force. In slow waves of an airspeed that the
+    bias of f_x follows, too, that goes astray: 3 m/s in 14 s, at a told standard deviation of 0.7 m/s. So all of the
+    offset but `LEARNT` counts as a share of the impact pressure, as an error of the ports does.
+    """
+    differences = head.differences[np.isfinite(head.differences)]
+    impact = float(np.median(differences)) if differences.size else 0.0
+    share = min(MOST_SHARE, noise.difference_sd / impact) if impact > 0.0 else MOST_SHARE
+    ports = replace(noise.head, position_sd=hypot(noise.head.position_sd, share))
+    return replace(noise, difference_sd=min(LEARNT, noise.difference_sd), head=ports)
 
 
 def _zero(head: Head, stretches: list[Stretch]) -> float:

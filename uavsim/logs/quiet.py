@@ -29,9 +29,11 @@ CONTRAST, FAINT = 3.0, 20.0
 CARRIED = (0.7, 1.3)  # g, of the mean force of an aircraft that is carried about
 LONGEST = 60.0  # s of a stretch that are looked at for noise
 AVERAGED = 0.25  # s, of the longest means
-SECOND, FEW = 1.0, 4  # s over which noise is judged, and means in it at the least
+SECOND, FEW = 1.0, 3  # s over which noise is judged, and differences in it at the least
+ENOUGH = 100  # differences of means in all, of which the noise is known to a tenth
 COLOURED = 1.4  # times as much as single readings show, from which on noise is coloured. By hand
 BEYOND = 3.0  # standard deviations, to which a second difference is cut: 1 % less of Gaussian noise
+QUARTILE = 0.6745  # of a standard normal variable
 ROBUST = 1.4826  # sd of a Gaussian over its median absolute deviation
 
 
@@ -121,14 +123,28 @@ def noise_at_rest(channel: Channel, stretches: list[Stretch]) -> float | None:
     It is that of a calm second: one in four is calmer. What wind makes of a head at rest is none of its noise.
     """
     found: list[list[float]] = [[] for _ in _means(channel, AVERAGED)]
+    number = [0] * len(found)
     for stretch in stretches:
         last = min(stretch.end, stretch.start + LONGEST)
         for start in np.arange(stretch.start, last - 0.5 * SECOND, SECOND):
             first, after = np.searchsorted(channel.t, (start, min(start + SECOND, last)))
-            for variances, m in zip(found, _means(channel, AVERAGED), strict=True):
-                if after - first >= FEW * m:
-                    variances.append(_allan(channel.values[first:after], m))
-    return as_white([sqrt(float(np.percentile(of_one, 25.0))) for of_one in found if of_one]) if found[0] else None
+            for i, m in enumerate(_means(channel, AVERAGED)):
+                differences = int(after - first) // m - 1
+                if differences >= FEW:
+                    found[i].append(_allan(channel.values[first:after], m) / _usual(differences))
+                    number[i] += differences
+    known = [one for i, one in enumerate(found) if one and (i == 0 or number[i] >= ENOUGH)]
+    return as_white([sqrt(float(np.percentile(one, 25.0))) for one in known]) if found[0] else None
+
+
+def _usual(differences: int) -> float:
+    """What is between the lower quartile of a variance by so many differences and the variance itself.
+
+    By Wilson and Hilferty's cube root of χ²; neighbouring differences of white noise are worth two thirds of their
+    number.
+    """
+    part = 2.0 / (9.0 * max(1.0, 2.0 / 3.0 * differences))
+    return float((1.0 - part - QUARTILE * sqrt(part)) ** 3)
 
 
 def noise_throughout(channel: Channel, averaged: float = 0.0) -> float:
