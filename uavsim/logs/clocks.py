@@ -9,7 +9,7 @@ correlation R; a parabola through the best three has the delay. Its standard dev
 
     σ_τ = σ_r/√Σ(dΔp/dt)²
 
-σ_r being what remains, and of the slope what neither shape can make. What is found is the age of the pressure, its
+σ_r being what remains, over as many points as are not alike, and of the slope what neither shape can make. What is found is the age of the pressure, its
 tubes and filters included, and the clocks' offset together. One launch cannot tell them apart.
 """
 
@@ -116,9 +116,21 @@ def _match(head: Head, t: Array, square: Array) -> Delay | None:
     steep = np.gradient(shapes @ factors, dt)
     steep = steep - steep.mean()
     steep = steep - basis @ (basis.T @ steep)
-    each = max(1.0, head.total.period / dt)  # points of the grid that are one reading
+    each = max(head.total.period / dt, _alike(left))  # points of the grid that are one reading, or one gust
     sd = sqrt(float(np.mean(left**2)) * each / float(np.dot(steep, steep)))
     return Delay(float(grid[best] - t[0] + shift * dt), sd, float(likeness[best]))
+
+
+def _alike(left: Array) -> float:
+    """How many points of a series go together: 1 + 2 Σ of its autocorrelations up to the first that is below 0."""
+    whole = float(np.dot(left, left))
+    together = 1.0
+    for lag in range(1, left.size // 2):
+        share = float(np.dot(left[lag:], left[:-lag])) / whole if whole > 0.0 else 0.0
+        if share <= 0.0:
+            break
+        together += 2.0 * share
+    return together
 
 
 def _likeness(signal: Array, shapes: Array) -> tuple[Array, Array]:
