@@ -129,3 +129,12 @@ def test_a_long_log_that_cannot_be_used_is_one_line(tmp_path: Path, change, says
     with pytest.raises(ValueError, match=r"^[^\n]*a\.csv: [^\n]*$") as caught:
         replay_long(Stream([path]), DetectorSettings(), replay_log, tmp_path)
     assert says in str(caught.value)
+
+
+@pytest.mark.usefixtures("small")
+def test_a_launch_along_another_axis_is_told_of_a_long_log_too(tmp_path: Path) -> None:
+    table = flights().rename(columns={"fx": "fy", "fy": "fx"})
+    path = written(table, tmp_path / "a.parquet")
+    long = replay_long(Stream([path]), DetectorSettings(), replay_log, tmp_path)
+    assert long.flight.score["recording"]["detections"] == []
+    assert any("along +y" in remark for remark in long.flight.score["recording"]["remarks"])

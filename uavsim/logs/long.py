@@ -1,7 +1,7 @@
 """The replay of a log that does not fit into memory, and of a log of several flights.
 
 One pass tells rate, unit and gaps (`stream.Survey`), a second one runs the detector by its loop (`watch`) and writes
-the readings as they pass. Around the first detection, or the greatest force along x, a stretch is replayed as any log
+the readings as they pass. Around the first detection, or the greatest force, a stretch is replayed as any log
 is, with all that is made of one. A log of several flights is cut where a detection follows the one before it after
 `APART` or more: each flight is replayed by itself.
 """
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 BEFORE, AFTER = 60.0, 300.0  # s of a stretch around a detection
 MOST_STRETCH = 250_000  # readings of one: with all that is made of them 100 MB
+LASTING = 0.05  # s, over which the force is averaged to find the greatest where there is no detection: no jolt
 APART = 30.0  # s from one detection to the next, from which that is another flight's
 BINS = 4000  # of the whole log, of each of which the figure has the least and the greatest force
 GROUP = 250_000  # readings of a group of the Parquet file that is written
@@ -143,11 +144,18 @@ def _passes(
             watch.take(readings)
             thin.take(readings)
             write(readings)
-            if np.isfinite(readings[:, 1]).any():
-                row = int(np.nanargmax(readings[:, 1]))
-                if readings[row, 1] > greatest:
-                    greatest, at = float(readings[row, 1]), float(readings[row, 0])
+            greatest, at = max((greatest, at), _greatest(readings, survey.rate))
     return survey, watch, thin, at
+
+
+def _greatest(readings: Array, rate: float) -> tuple[float, float]:
+    """The greatest force along whatever axis, averaged over `LASTING`, m/s², and when, s."""
+    size = max(1, round(LASTING * rate))
+    blocks = readings[: len(readings) // size * size or None].reshape(-1, min(size, len(readings)), 4)
+    mean = np.nan_to_num(blocks).mean(axis=1)
+    force = np.linalg.norm(mean[:, 1:], axis=1)
+    row = int(np.argmax(force))
+    return float(force[row]), float(mean[row, 0])
 
 
 @contextmanager
