@@ -28,6 +28,7 @@ MARKS = {  # byte order marks, the longer before those that they begin with
     b"\xfe\xff": "utf-16",
     b"\xef\xbb\xbf": "utf-8-sig",
 }
+LOST = re.compile(rb"\0{16,}")  # what a logger leaves of a page that was never written
 LINE = re.compile(r"\r\n|\n|\r")
 POINT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
 COMMA = re.compile(r"[-+]?(?:\d+,\d*|,\d+)(?:[eE][-+]?\d+)?")
@@ -171,7 +172,7 @@ def _without_mark(head: bytes) -> str:
         zeros, others = sample[first::2], sample[1 - first :: 2]
         if len(sample) > 3 and zeros.count(0) > 0.8 * len(zeros) and others.count(0) < 0.1 * len(others):
             return encoding
-    if is_binary(sample):
+    if is_binary(LOST.sub(b"", sample) or b"\0"):
         raise ValueError("not a table of comma-separated values (a binary file)")
     return "utf-8" if _is_utf8(head) else "latin-1"
 

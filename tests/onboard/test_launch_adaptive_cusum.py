@@ -119,16 +119,27 @@ def test_a_gap_counts_three_periods_and_keeps_the_sum():
     assert detector.sum == pytest.approx(held + 3e-3 * G)
 
 
+@pytest.mark.parametrize("rate", [10.0, 38.0, 50.0, 62.0, 104.0, 111.0])
+def test_one_sample_alone_never_decides_unless_it_is_let(rate):
+    """However strong it is, and whatever came before; two in a row do."""
+    rest = [0.3 * G] * round(2.0 * rate)
+    for confirm in (True, False):
+        settings = DetectorSettings(adaptive=AdaptiveCusumSettings(confirm=confirm))
+        alone = recognised(build(settings, rate), rest + [50.0 * G, 0.3 * G] * 20 + rest, rate)
+        assert bool(alone) is not confirm
+        assert recognised(build(settings, rate), [*rest, 50.0 * G, 50.0 * G], rate) == [len(rest) + confirm]
+
+
 @pytest.mark.parametrize("rate", [38.0, 50.0, 104.0, 833.0, 4000.0])
 def test_it_keeps_time_at_every_rate(rate):
-    """A step to 6 g after two seconds of rest: 9 g·ms or what one sample adds, up to 16, and one sample more."""
+    """A step to 6 g after two seconds of rest: 9 g·ms, or what two samples add up to 10, or one; and one more."""
     rest = round(2.0 * rate)
     detector = build(DetectorSettings(), rate)
     (found,) = recognised(detector, [0.3 * G] * rest + [6.0 * G] * rest, rate)
     assert (
         0.009
         <= (found + 1 - rest) / rate
-        <= max(0.009, min(1.0 / rate, 0.016)) + 1.01 / rate + (0.001 if rate > 1000.0 else 0.0)
+        <= max(0.009, 1.0 / rate, min(2.0 / rate, 0.010)) + 1.01 / rate + (0.001 if rate > 1000.0 else 0.0)
     )
 
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import uavsim
-from uavsim.onboard.launch import DetectorSettings, Inav, Px4, build
+from uavsim.onboard.launch import ArduPilot, DetectorSettings, Inav, Px4, build
 from uavsim.onboard.launch.inav import lowpass
 
 NAN = math.nan
@@ -14,8 +14,8 @@ REST = 1200  # samples on the rail at 1 kHz: more than the two blocks that the m
 KINDS = ("px4", "px4-norm", "ardupilot", "inav", "paparazzi", "altos")
 
 
-def make(kind):
-    return build(DetectorSettings(kind=kind), 1000.0)
+def make(kind, rate=1000.0):
+    return build(DetectorSettings(kind=kind), rate)
 
 
 def after_rest(detector, force, rest=2.1, period=0.001):
@@ -141,3 +141,124 @@ def test_a_flight_ends_in_cruise():
     flight = uavsim.fly("catapult", overrides=["detector.kind=px4", "duration=35"])
     assert flight.score["outcome"] == "cruise"
     assert flight.score["launch"]["false_detections"] == 0
+
+
+# -- gravity taken off -----------------------------------------------------------------------------------------------
+
+GRAVITY_FREE = ("px4", "px4-norm", "ardupilot", "altos")
+BY_ATTITUDE = ("px4", "px4-norm", "ardupilot")
+
+
+def first(detector, stretches, period=0.005):
+    """Time of recognition, s, in stretches of (seconds, force along x)."""
+    k = 0
+    for seconds, force in stretches:
+        for _ in range(round(seconds / period)):
+            if detector.step(k * period, force, 0.3, -9.6):
+                return k * period
+            k += 1
+    return None
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("lasts", [0.04, 0.4, 3.0])
+def test_an_arrest_in_a_net_is_no_launch(kind, lasts):
+    """-8 g: what no rest can read is none of gravity, so that rest is no launch after it.
+
+    But for PX4's rule by magnitude, as the real one: it takes the arrest itself for one, whatever its direction.
+    """
+    found = first(make(kind, 200.0), [(3.0, 2.1), (lasts, -8.0 * G), (3.0, 2.1)])
+    assert (found is not None) is (kind == "px4-norm" and lasts > 0.05)
+    assert found is None or found < 3.0 + lasts
+
+
+@pytest.mark.parametrize("kind", GRAVITY_FREE)
+@pytest.mark.parametrize("rest", [0.0, 0.01, 0.1, 0.3, 1.0])
+def test_none_is_blind_in_the_first_second(kind, rest):
+    """7 g for 0.4 s, the log trimmed to so little of rest before it."""
+    found = first(make(kind, 200.0), [(rest, 2.1), (0.4, 7.0 * G), (0.5, 2.1)])
+    assert found is not None
+    assert found < rest + 0.35
+
+
+@pytest.mark.parametrize("kind", GRAVITY_FREE)
+@pytest.mark.parametrize("rest", [-G, 0.0, G])
+def test_rest_in_any_attitude_is_no_launch_from_the_first_sample_on(kind, rest):
+    assert first(make(kind, 200.0), [(1.0, rest)]) is None
+    if kind != "px4-norm":  # begins in a net
+        assert first(make(kind, 200.0), [(0.3, -8.0 * G), (1.0, 0.7 * rest)]) is None
+
+
+@pytest.mark.parametrize("kind", BY_ATTITUDE)
+def test_gravity_is_taken_off_by_an_attitude_that_is_told(kind):
+    """Held nose up by 40° and at once level, pushed by just too little; nose down by 25°, by what is just enough."""
+    weak = {"ardupilot": 14.5}.get(kind, 29.5)
+    told = make(kind, 200.0)
+    for k in range(600):
+        push = weak if k >= 400 else 0.0
+        pitch = math.radians(40.0) if k < 400 else 0.0
+        told.attitude(0.0, pitch)
+        assert not told.step(0.005 * k, push + G * math.sin(pitch), 0.0, -G * math.cos(pitch))
+    told.reset()
+    told.attitude(0.0, math.radians(-25.0))
+    felt = weak + 1.0 + G * math.sin(math.radians(-25.0))
+    assert first(told, [(1.0, felt)]) is not None  # begins in the push: no rest is needed
+    told.reset()
+    told.attitude(NAN, NAN)
+    assert first(told, [(1.0, felt)]) is None  # a mean again, from the first sample on: at most 1 g of it
+
+
+def test_px4_norm_takes_all_of_gravity_off_by_attitude():
+    roll, pitch = 0.4, -0.5
+    felt = (G * math.sin(pitch), -G * math.cos(pitch) * math.sin(roll), -G * math.cos(pitch) * math.cos(roll))
+    for push, expected in ((29.9, False), (30.1, True)):
+        detector = make("px4-norm", 100.0)
+        detector.attitude(roll, pitch)
+        found = [detector.step(0.01 * k, felt[0], felt[1] + push, felt[2]) for k in range(30)]
+        assert any(found) is expected
+
+
+def test_ardupilot_wants_so_many_events_by_turns():
+    """Shaken: forwards, backwards, forwards; two of the same sign are one, and 0.5 s between them too long."""
+
+    def make_one(count):
+        return ArduPilot(50.0, count=count, delay=0.0)
+
+    forth, back, rest = (0.2, 25.0), (0.2, -20.0), (0.4, 2.1)
+    assert first(make_one(3), [(1.0, 2.1), forth, back, forth], period=0.02) == pytest.approx(1.52, abs=0.05)
+    assert first(make_one(3), [(1.0, 2.1), forth, rest, forth, rest, forth], period=0.02) is None
+    assert first(make_one(3), [(1.0, 2.1), forth, back, (1.0, 2.1), forth], period=0.02) is None
+    assert first(make_one(2), [(1.0, 2.1), forth, back], period=0.02) == pytest.approx(1.32, abs=0.05)
+
+
+def test_ardupilot_without_a_level_launches_when_the_delay_is_over():
+    """MINACC 0, as the firmware ships."""
+    assert first(ArduPilot(50.0, acceleration=0.0), [(1.0, 2.1)], period=0.02) == pytest.approx(0.2, abs=0.021)
+
+
+@pytest.mark.parametrize(("roll", "pitch"), [(0.0, -31.0), (0.0, 46.0), (31.0, 0.0), (-31.0, 0.0)])
+def test_ardupilot_ends_a_launch_of_an_attitude_that_none_has(roll, pitch):
+    detector = ArduPilot(50.0)
+    for k in range(200):
+        attitude = (roll, pitch) if k >= 55 else (0.0, 10.0)
+        detector.attitude(*map(math.radians, attitude))
+        assert not detector.step(0.02 * k, 60.0 if 50 <= k < 60 else 2.0, 0.0, -9.6)
+
+
+def test_inav_is_thrown_by_six_satellites_above_three_metres_a_second():
+    def found(speed, number, force):
+        detector = make("inav", 200.0)
+        detector.satellites(speed, number)
+        return first(detector, [(1.0, force)])
+
+    assert found(5.0, 6, 4.0) == pytest.approx(0.035, abs=0.006)  # 40 ms, of which the first sample stands for 5
+    for speed, number, force in ((5.0, 5, 4.0), (2.9, 9, 4.0), (5.0, 6, -1.0), (NAN, 9, 4.0), (5.0, NAN, 4.0)):
+        assert found(speed, number, force) is None
+
+
+def test_inav_is_no_launch_when_tilted():
+    detector = make("inav", 200.0)
+    detector.attitude(0.0, math.radians(46.0))
+    assert first(detector, [(1.0, 60.0)]) is None
+    detector.attitude(NAN, 0.0)
+    assert first(detector, [(0.5, 2.0), (1.0, 60.0)]) is not None

@@ -201,6 +201,7 @@ def test_a_rule_of_the_field_has_one_default(kind):
         ("px4-norm", "time", 0.1),
         ("ardupilot", "acceleration", 61.0),
         ("ardupilot", "delay", 0.1),
+        ("ardupilot", "count", 2),
         ("inav", "acceleration", 61.0),
         ("inav", "time", 0.03),
         ("inav", "cutoff", 3.0),

@@ -57,6 +57,11 @@ def variants(kind: str) -> list[DetectorSettings]:
         own = getattr(plain, group)
         return [
             plain,
+            *(
+                replace(plain, ardupilot=replace(plain.ardupilot, acceleration=level, count=n))
+                for level, n in ((4.0, 2), (4.0, 3), (0.0, 1))
+                if kind == "ardupilot"
+            ),
             replace(plain, **{group: replace(own, acceleration=40.0)}, axes=("-z",)),
             replace(plain, **{group: replace(own, acceleration=5.0)}, axes=("+y",)),
         ]

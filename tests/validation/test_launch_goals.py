@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 from uavsim.onboard.launch import DetectorSettings
 from uavsim.studies.detections import BatchDetector
 from uavsim.studies.false_alarms import count
+from uavsim.studies.low_rates import alarms, delays
 from uavsim.studies.neyman_pearson import earliest_deadline
-from uavsim.studies.signals import MEASURED_CATAPULT, LaunchSettings, Stroke, record_launches
+from uavsim.studies.signals import LaunchSettings, Stroke
 from uavsim.studies.trials import Drawn, Verdicts, join, judge
 from uavsim.truth import STANDARD_GRAVITY as G0
 
@@ -177,10 +178,19 @@ def test_the_papers_detector_is_beaten(figure: Figure) -> None:
 
 
 @pytest.mark.parametrize("sigma", [0.05, 0.3])
-def test_recordings_at_50_hz(sigma: float, figure: Figure) -> None:
-    """500 strokes of the measured catapult, 6.7 g and 0.6 s, at any phase of the samples: all within 60 ms."""
-    drawn = record_launches(replace(MEASURED_CATAPULT, sigma_g=sigma), SEED, 500, 50.0)
-    found = BatchDetector(OURS, 50.0).first(drawn.f)
-    assert (found >= 0).all()
-    onset = np.array([truth.onset for truth in drawn.truths])
-    figure("after the onset", 1e3 * (found / 50.0 - onset), "ms", 0, 60)
+@pytest.mark.parametrize(("rate", "median", "late"), [(50.0, 50.0, 65.0), (100.0, 40.0, 50.0), (200.0, 40.0, 50.0)])
+def test_recordings_at_low_rates(rate: float, median: float, late: float, sigma: float, figure: Figure) -> None:
+    """2000 strokes of the measured catapult, 6.7 g and 0.6 s, at any phase of the samples: none lost or too early."""
+    found = 1e3 * delays(OURS, rate, 2000, seed=SEED, sigma_g=sigma)
+    assert (found > 0.0).all()
+    figure("median after the onset", [float(np.median(found))], "ms", 0, median)
+    figure("95th percentile", [float(np.quantile(found, 0.95))], "ms", 0, late)
+
+
+@pytest.mark.parametrize("rate", [50.0, 100.0, 200.0])
+@pytest.mark.parametrize("kind", ["mix", "vibration", "centrifuge"])
+def test_alarms_at_low_rates(rate: float, kind: str, figure: Figure, whole: bool) -> None:
+    """What is above 0.4 of the rate was filtered off before it was sampled: at most one alarm an hour."""
+    hours = 20.0 if whole else 4.0
+    (found,) = alarms([OURS], rate, hours, seed=SEED, filtered=True, kind=kind)
+    figure(f"alarms in {hours:g} h", [found.count], "", 0, hours)

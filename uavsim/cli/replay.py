@@ -117,6 +117,7 @@ def _replay_log(
     from uavsim.logs import is_long, read_log, replay_log
     from uavsim.logs.aired import with_airspeed
     from uavsim.logs.airspeed import air_settings
+    from uavsim.studies.low_rates import remark
     from uavsim.views import documents, terminal
     from uavsim.views import log as view
 
@@ -124,10 +125,13 @@ def _replay_log(
         air = air_settings(settings, noise)
         in_parts = all_launches or is_long(logs)
         recording = None if in_parts else read_log(logs, mapping)
-    detector = air.scenario.detector if any(given.strip().startswith("detector.") for given in settings) else None
+    detector = air.scenario.detector
 
     def made(recording: "Recording") -> "Flight":
-        return with_airspeed(replay_log(recording, detector), recording, air)
+        flight = replay_log(recording, detector)
+        if settings and (said := remark(detector, recording.rate)):
+            flight.score["recording"]["remarks"].append(said)
+        return with_airspeed(flight, recording, air)
 
     def draw(folder: Path) -> None:
         view.save_plot(replayed, folder / "plots")

@@ -17,8 +17,9 @@ import numpy as np
 
 from uavsim.files import whole
 from uavsim.flight import UNITS, Flight, frame
+from uavsim.logs.doubt import FOOT, doubted, is_in_feet, scaled
 from uavsim.logs.recording import Array, Gap, Recording
-from uavsim.logs.stream import Lot, Shown, Stream, Survey
+from uavsim.logs.stream import Shown, Stream, Survey
 from uavsim.logs.watch import Watch
 from uavsim.onboard import launch
 
@@ -30,7 +31,7 @@ BEFORE, AFTER = 60.0, 300.0  # s of a stretch around a detection
 MOST_STRETCH = 250_000  # readings of one: with all that is made of them 100 MB
 APART = 30.0  # s from one detection to the next, from which that is another flight's
 BINS = 4000  # of the whole log, of each of which the figure has the least and the greatest force
-GROUP = 1_000_000  # readings of a group of the Parquet file that is written
+GROUP = 250_000  # readings of a group of the Parquet file that is written
 
 Replay = Callable[[Recording], Flight]
 
@@ -93,6 +94,8 @@ def replay_long(
     stretch = stream.between(centre - before, centre + after)
     stretch = replace(stretch, remarks=tuple(dict.fromkeys((*stream.remarks, *stretch.remarks))))
     flight = _whole(replay(stretch), survey, watch.detections)
+    said = flight.score["recording"]["remarks"]
+    said += [remark for remark in doubted(stretch, settings, survey.evidence).remarks if remark not in said]
     tables = {**flight.tables, "accelerometer": thin.table(stretch.readings)}
     spans = spans_of(watch.detections, survey)
     return LongReplay(replace(flight, tables=tables), ("accelerometer",), spans)
@@ -130,23 +133,25 @@ def _passes(
     survey = stream.survey(None if shown is None else lambda share: shown(0.4 * share))
     watch, part = Watch(settings, survey.rate, survey.axes), -1
     thin, greatest, at = _Thin(survey), -np.inf, survey.start
+    scale = FOOT if is_in_feet(survey.evidence.rest()) and not scaled(stream.mapping or "") else 1.0
     with _table(folder / "accelerometer.parquet") as write:
         for lot in stream.lots(None if shown is None else lambda share: shown(0.4 + 0.6 * share)):
             if lot.begins or part < 0:
                 part += 1
                 watch.begin(survey.rates[min(part, len(survey.rates) - 1)])
-            watch.take(lot.readings)
-            thin.take(lot.readings)
-            write(lot)
-            if np.isfinite(lot.readings[:, 1]).any():
-                row = int(np.nanargmax(lot.readings[:, 1]))
-                if lot.readings[row, 1] > greatest:
-                    greatest, at = float(lot.readings[row, 1]), float(lot.readings[row, 0])
+            readings = lot.readings if scale == 1.0 else lot.readings * np.array([1.0, scale, scale, scale])
+            watch.take(readings)
+            thin.take(readings)
+            write(readings)
+            if np.isfinite(readings[:, 1]).any():
+                row = int(np.nanargmax(readings[:, 1]))
+                if readings[row, 1] > greatest:
+                    greatest, at = float(readings[row, 1]), float(readings[row, 0])
     return survey, watch, thin, at
 
 
 @contextmanager
-def _table(path: Path) -> Iterator[Callable[[Lot], None]]:
+def _table(path: Path) -> Iterator[Callable[[Array], None]]:
     """Write readings as they come, as `uavsim.flight` writes them at once."""
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -155,8 +160,8 @@ def _table(path: Path) -> Iterator[Callable[[Lot], None]]:
     schema = pa.schema([pa.field(name, pa.float64(), metadata={"unit": unit}) for name, unit in units.items()])
     kept: list[Array] = []
 
-    def write(lot: Lot) -> None:
-        kept.append(lot.readings)
+    def write(readings: Array) -> None:
+        kept.append(readings)
         if sum(map(len, kept)) >= GROUP:
             flush(writer)
 
@@ -166,7 +171,7 @@ def _table(path: Path) -> Iterator[Callable[[Lot], None]]:
             kept.clear()
             to.write_table(pa.Table.from_arrays([pa.array(column) for column in columns], schema=schema))
 
-    with whole(path) as part, pq.ParquetWriter(part, schema) as writer:
+    with whole(path) as part, pq.ParquetWriter(part, schema, use_dictionary=False) as writer:
         yield write
         flush(writer)
 
@@ -201,6 +206,12 @@ class _Thin:
 def _whole(stretch: Flight, survey: Survey, detections: Sequence[float]) -> Flight:
     """Return a stretch's flight with the figures of the whole log."""
     said = stretch.score["recording"]
+    outside = [t for t in detections if not said["start"] <= t <= said["end"]]
+    detections = [
+        *(t for t in outside if t < said["start"]),
+        *said["detections"],  # there it is by each reading, and with all that the log tells besides
+        *(t for t in outside if t > said["end"]),
+    ]
     inside = {"start": said["start"], "end": said["end"], "readings": said["readings"]}
     recording: dict[str, Any] = {
         **said,

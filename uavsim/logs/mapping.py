@@ -21,6 +21,7 @@ SLOW = 20.0  # Hz, below which a stroke of 0.3 s has a handful of readings
 OTHER = "other "  # before the label of a message of another accelerometer
 LOOKS_LIKE_G = (0.7, 1.4)  # median of |f|: at rest and in level flight it is 1 in g and 9.8 in m/s²
 TOO_MUCH = 400.0  # m/s², median of |f|: no flight feels 40 g for most of the time, counts and mg read so
+STRETCH = 25  # readings that are averaged to tell a force from noise about none
 UNEQUAL = 1.2  # ratio of the axes' factors above which their units are mixed
 
 
@@ -89,7 +90,7 @@ def recording_of(paths: Sequence[Path], mapping: str | None, tables: Sequence[Ta
         pieces = [piece for piece in pieces if piece.force]
         if not pieces or not any("fx" in piece.force or set(piece.force) & set(sources) for piece in pieces):
             missing = [axis for axis in AXES if not any(axis in piece.force for piece in pieces)]
-            raise ValueError(_lacks(missing, [name for table in tables for name in table.columns], tables=tables))
+            raise ValueError(lacks(missing, [name for table in tables for name in table.columns], tables=tables))
         factors = {axis: factor for piece in pieces for axis, factor in piece.factors.items()}
         check_factors(factors)
         readings, cuts, unwrapped = _merged(pieces)
@@ -117,7 +118,7 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
         missing = lacking or [name for name in COLUMNS if name not in held]
         if not alone and "t" in missing:
             missing = ["t"]  # what it lacks besides may be in another file
-        raise ValueError(_lacks(missing, found, [sources[name].column for name in missing if name in sources], [table]))
+        raise ValueError(lacks(missing, found, [sources[name].column for name in missing if name in sources], [table]))
     if "t" not in held or len(held) == 1:
         return None
     values = _values(table, held, remarks)
@@ -159,7 +160,7 @@ def check_found(sources: Mapped, tables: Sequence[Table]) -> None:
     }
     if lacking := [ours for ours in sources if ours not in held]:
         found = [name for table in tables for name in table.columns]
-        raise ValueError(_lacks(lacking, found, [sources[ours].column for ours in lacking], tables))
+        raise ValueError(lacks(lacking, found, [sources[ours].column for ours in lacking], tables))
 
 
 def source_of(name: str, table: Table, sources: Mapped) -> Source:
@@ -231,9 +232,8 @@ def one_g(force: Array, name: str, remarks: list[str]) -> float:
     return STANDARD_GRAVITY / counts
 
 
-def _lacks(
-    missing: Sequence[str], found: Sequence[str], named: Sequence[str] = (), tables: Sequence[Table] = ()
-) -> str:
+def lacks(missing: Sequence[str], found: Sequence[str], named: Sequence[str] = (), tables: Sequence[Table] = ()) -> str:
+    """Say what is lacking, what there is, and what to map."""
     what = f"has no column {', '.join(repr(brief(name)) for name in named)}" if named else f"lacks {', '.join(missing)}"
     if any(not table.named for table in tables):
         return (
@@ -362,7 +362,7 @@ def check_unit(force: Array) -> None:
         return  # of one axis alone the rest may be anything
     sizes = np.linalg.norm(force, axis=1)
     middle = float(np.nanmedian(sizes))
-    if LOOKS_LIKE_G[0] <= middle <= LOOKS_LIKE_G[1]:
+    if LOOKS_LIKE_G[0] <= middle <= LOOKS_LIKE_G[1] and _about(force) >= LOOKS_LIKE_G[0]:
         raise ValueError(
             f"the median of |f| is {middle:.3g}, which looks like g and not m/s²: map fx=…*9.80665 and so on (…*1 if "
             "it is m/s² all the same)"
@@ -371,6 +371,13 @@ def check_unit(force: Array) -> None:
         raise ValueError(
             f"the median of |f| is {middle:.4g}, which looks like mg or counts and not m/s²: map fx=…*factor and so on"
         )
+
+
+def _about(force: Array) -> float:
+    """Median of what |f| is about: noise alone, as where gravity has been taken off, is about 0."""
+    whole = len(force) // STRETCH * STRETCH
+    stretches = (force[:whole] if whole else force).reshape(-1, min(STRETCH, len(force)), len(AXES))
+    return float(np.median(np.linalg.norm(np.nan_to_num(stretches).mean(axis=1), axis=1)))
 
 
 def _remarks(readings: Array) -> list[str]:

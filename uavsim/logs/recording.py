@@ -165,9 +165,10 @@ class Recording:
         return found
 
     def clipping(self) -> list[Clipping]:
-        """Return the axes whose greatest or least value is held for `HELD` readings in a row.
+        """Return the axes whose greatest or least value is held for `HELD` readings in a row that differ otherwise.
 
-        Readings that repeat those before them in all axes are one: logs of a slow sensor hold each for some rows.
+        Rows that say in all axes what the row before said are one reading: a logger that is faster than its sensor
+        writes each more than once. Where there is but one axis a reading counts for as many rows as is usual.
         """
         found = (self._held(axis, sign) for axis in AXES for sign in (1.0, -1.0))
         return [clipped for clipped in found if clipped is not None]
@@ -178,16 +179,19 @@ class Recording:
             return None
         edges = np.diff(np.concatenate(([0], (f == level).astype(int), [0])))
         starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-        made = np.cumsum(self._new())  # readings up to each row
-        lengths = np.asarray(made[ends - 1] - made[starts] + 1)
+        lengths = self._readings_in(starts, ends)
         if lengths.max() < HELD:
             return None
         first = starts[np.argmax(lengths >= HELD)]
-        return Clipping(axis, sign * level, int(lengths.sum()), float(self.readings[first, 0]))
+        return Clipping(axis, sign * level, int((ends - starts).sum()), float(self.readings[first, 0]))
 
-    def _new(self) -> NDArray[np.bool_]:
-        """Which rows are a reading of their own: where most repeat those before them, only those that do not."""
+    def _readings_in(self, starts: NDArray[np.int64], ends: NDArray[np.int64]) -> Array:
+        """How many readings there are in runs of rows, those that say the same counted once."""
         force = self.readings[:, 1:]
-        same = np.all((force[1:] == force[:-1]) | np.isnan(force[1:]), axis=1)
-        held = np.count_nonzero(same) > SAMPLED_AND_HELD * same.size
-        return np.concatenate(([True], ~same if held else np.ones(same.size, bool)))
+        axes = np.isfinite(force).any(axis=0)
+        new = np.concatenate(([True], (force[1:, axes] != force[:-1, axes]).any(axis=1)))
+        if np.count_nonzero(axes) < 2:
+            usual: float = np.count_nonzero(new) / new.size
+            return np.asarray((ends - starts) * usual, np.float64)
+        before = np.concatenate(([0], np.cumsum(new)))
+        return np.asarray(np.maximum(before[ends] - before[starts + 1] + 1, 1), np.float64)

@@ -2,7 +2,7 @@
 
 from array import array
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
@@ -13,7 +13,10 @@ from uavsim import __version__
 from uavsim.failure import FAILED, PartError
 from uavsim.files import without_none
 from uavsim.flight import Flight, frame
+from uavsim.logs.doubt import backwards, doubted, ends
+from uavsim.logs.informed import sources, telling
 from uavsim.logs.recording import AXES, COLUMNS, Array, Recording
+from uavsim.logs.unseen import unseen
 from uavsim.logs.watch import PAUSE
 from uavsim.onboard import launch
 from uavsim.onboard.launch.guarded import STATE
@@ -47,6 +50,7 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
     rate = recording.rate
     used = launch.DetectorSettings() if settings is None else settings
     check_axes(recording, used)
+    recording = doubted(recording, used)
     columns, detections, reason = _watch(used, recording)
     t, fx, fy, fz = recording.readings.T
     tables = {
@@ -59,7 +63,12 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
         "recording": {"files": list(recording.files), "map": recording.mapping, "rate": rate},
         "detector": asdict(used),
     }
+    told = sources(launch.build(used, rate), recording.series)
+    recording = replace(recording, remarks=(*recording.remarks, *told, *backwards(recording, used, detections)))
     score = _score(recording, used.kind, detections)
+    if not detections and not reason:
+        why = unseen(recording, used)
+        score["recording"] |= {"unseen": why.document(), "remarks": [*recording.remarks, *why.remarks()]}
     if reason:
         score |= {"outcome": FAILED, "reason": reason}
     return Flight(about, tables, events, score)
@@ -88,7 +97,11 @@ def _watch(settings: launch.DetectorSettings, recording: Recording) -> tuple[dic
     try:
         for part in recording.parts:
             detector, resume = launch.build(settings, recording.rate_of(part)), np.inf
-            for t, fx, fy, fz in _rows(filled(recording, part)):
+            readings = filled(recording, part)
+            tell = telling(detector, readings[:, 0], recording.series)
+            for k, (t, fx, fy, fz) in enumerate(_rows(readings)):
+                if tell is not None:
+                    tell(k)
                 if t >= resume:
                     detector.reset()
                     resume = np.inf
@@ -170,8 +183,9 @@ def _score(recording: Recording, kind: str, detections: list[float]) -> dict[str
             "readings": len(recording.readings),
             "rate": recording.rate,
             "gaps": [asdict(gap) for gap in recording.gaps()],
-            "clipping": [asdict(clipped) for clipped in recording.clipping()],
+            "clipping": [asdict(clipped) for clipped in ends(recording)],
             "detections": detections,
+            "unseen": None,
             "pause": PAUSE,
             "remarks": list(recording.remarks),
         },

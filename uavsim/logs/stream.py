@@ -15,6 +15,7 @@ import numpy as np
 
 from sensors.bench_log import Source, numbers
 from sensors.files import look
+from uavsim.logs.evidence import Evidence
 from uavsim.logs.formats import Table, named, read_tables, table_in
 from uavsim.logs.mapping import (
     FASTEST,
@@ -23,6 +24,7 @@ from uavsim.logs.mapping import (
     check_found,
     check_unit,
     is_scaled,
+    lacks,
     one_g,
     read_log,
     recording_of,
@@ -74,6 +76,8 @@ class Survey:
         The first of them: the times before and after, s.
     axes : tuple of str
         Which it holds.
+    evidence : Evidence
+        What the readings show by themselves.
     """
 
     readings: int
@@ -83,6 +87,7 @@ class Survey:
     rates: list[float]
     gaps: list[tuple[float, float]]
     axes: tuple[str, ...]
+    evidence: Evidence
 
     @property
     def rate(self) -> float:
@@ -141,7 +146,11 @@ class Stream:
             check_found(self._sources, self._tables)
             holding = [table for table in self._tables if self._axes_of(table)]
             axes = {self._axes_of(table) for table in holding}
-            if len(axes) != 1 or not {"fx", *self._sources} & set(next(iter(axes))):
+            held = {axis for each in axes for axis in each}
+            if not {"fx", *self._sources} & held:
+                found = [name for table in self._tables for name in table.columns]
+                raise ValueError(lacks([axis for axis in AXES if axis not in held], found, (), self._tables))
+            if len(axes) != 1:
                 raise ValueError(
                     f"a log of more than {MOST_AT_ONCE} readings is read in parts, and must hold all axes, and a time, "
                     "in one file: map fx=… and so on to columns of one, or write it so"
@@ -260,6 +269,7 @@ class Stream:
         gaps: list[tuple[float, float]] = []
         axes = np.zeros(3, bool)
         sample: list[Array] = []
+        evidence: Evidence | None = None
         last = np.nan
         try:
             for lot in self.lots(shown):
@@ -276,18 +286,21 @@ class Stream:
                 for row in np.flatnonzero(steps > GAP * usual * (1.0 + 1e-6))[: MOST_GAPS - len(gaps)]:
                     gaps.append((float(t[row] - steps[row]), float(t[row])))
                 axes |= np.isfinite(lot.readings[:, 1:]).any(axis=0)
+                if evidence is None:
+                    evidence = Evidence(1.0 / usual if usual else 1.0)
+                evidence.add(lot.readings)
                 if len(sample) < 100:
                     sample.append(lot.readings[:: max(1, t.size // 200), 1:])
                 last = float(t[-1])
         except BackwardsError as error:
             raise ValueError(f"{names}: {error}; map t=… to a column that rises") from None
         with named(names):
-            if not readings:
+            if evidence is None:
                 raise ValueError("no row has a time: map t=…")
             rates = [1.0 / _middle(part) if _middle(part) else np.inf for part in intervals]
             self._check(rates, np.vstack(sample))
         held = tuple(axis for axis, is_held in zip(AXES, axes.tolist(), strict=True) if is_held)
-        return Survey(readings, start, end, duration, rates, gaps, held)
+        return Survey(readings, start, end, duration, rates, gaps, held, evidence)
 
     def _check(self, rates: Sequence[float], sample: Array) -> None:
         """Refuse what is no time, or no m/s²."""

@@ -2,7 +2,7 @@
 
 The loop takes samples at the times k / rate. A log's stamps jitter and leave some out: a reading that stands for n
 periods, up to three, is given n times, as `step` counts it, and after a longer gap the detector begins anew. What the
-loop finds is looked at again by `step` at the readings' own times, from two seconds before on, and counts where that
+loop finds is looked at again by `step` at the readings' own times, from some seconds before on, and counts where that
 says so.
 """
 
@@ -19,7 +19,7 @@ from uavsim.onboard.launch.detector import ROUNDING
 from uavsim.onboard.launch.loops import loop_of, row_of
 
 PAUSE = 1.0  # s from a detection until the detector is reset and watches again; strokes last up to 0.4 s
-BEFORE = 2.0  # s that `step` is given before what the loop found; what it keeps of the force before is younger
+BEFORE = 5.0  # s that `step` is given before what the loop found; what it keeps of the force before is younger
 AROUND = 0.2  # s by which `step` and the loop may differ, for jitter
 
 

@@ -4,9 +4,10 @@ The figure has the whole recording on the left, and on the right the first detec
 none, with the detector's windows below if it has any. Time is the log's own, in s.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -52,10 +53,29 @@ def lines(flight: "Flight") -> list[str]:
     kind = flight.score["launch"]["detector"]
     air = log_airspeed.lines(flight)
     if not found:
-        return [*said, f"{kind}: no launch detected; the greatest f_x is {_greatest(flight)}", *air]
+        none = f"{kind}: no launch detected; the greatest f_x is {_greatest(flight)}"
+        return [*said, none, *(_why(of["unseen"]) if of["unseen"] else ()), *air]
     said += [f"{kind}: launch detected at {t:.4f} s" for t in found[:MOST_LINES]]
     more = [f"… and {len(found) - MOST_LINES} more, in events.json"] if len(found) > MOST_LINES else []
     return [*said, *more, *air]
+
+
+def _why(of: Mapping[str, Any]) -> list[str]:
+    """Explain that there is no detection: what was seen, what is needed, what would have seen something."""
+    forces = ", ".join(f"{s['axis']} {s['greatest'] / STANDARD_GRAVITY:.2f} g at {s['time']:.3f} s" for s in of["seen"])
+    said = [f"  seen: the greatest forces are {forces}"]
+    if of["level"] is not None:
+        own = [f"{s['axis']} was for {1e3 * s['above']:.0f} ms" for s in of["seen"] if s["axis"] in of["axes"]]
+        said.append(
+            f"  needed: more than {of['level'] / STANDARD_GRAVITY:.3g} g along {' or '.join(of['axes'])} "
+            f"(detector.{of['level_key']}) for some {1e3 * of['lasting']:.0f} ms (detector.{of['time_key']}); "
+            + (", ".join(own) or "there was none")
+        )
+    said += [
+        f"  nearest: --set {one['set']} would have seen one at {one['detected']:.3f} s along {one['axis']}"
+        for one in of["nearest"]
+    ]
+    return said if of["nearest"] else [*said, "  nearest: no axis, kind or lower level would have seen one"]
 
 
 def _greatest(flight: "Flight") -> str:
@@ -74,7 +94,11 @@ def save_plot(flight: "Flight", folder: Path) -> Path:
 
 
 def draw(flight: "Flight") -> "Figure":
-    """Specific force and the detector's state over the whole recording and around the first detection."""
+    """Specific force and the detector's state over the whole recording and around the first detection.
+
+    Of a log whose clock begins anew it is the part with the first detection, or with the greatest f_x.
+    """
+    flight = _part(flight)
     readings, found = flight.accelerometer, flight.score["recording"]["detections"]
     t = readings["t"].to_numpy()
     centre = found[0] if found else float(t[int(np.nanargmax(readings["fx"].to_numpy()))])
@@ -99,6 +123,24 @@ def draw(flight: "Flight") -> "Figure":
         marks = [Mark(centre, "greatest $f_x$", GREY)]
     flag_all(figure, columns, [marks[:MOST_LABELS]] * 2)
     return figure
+
+
+def _part(flight: "Flight") -> "Flight":
+    """Return the part of a log in which its clock runs on and the first detection lies, or the greatest f_x."""
+    readings, detector = flight.accelerometer, flight.detector
+    t = readings["t"].to_numpy()
+    back = np.flatnonzero(np.diff(t) <= 0.0) + 1
+    if not back.size or len(detector) != len(readings):
+        return flight
+    recognised = np.flatnonzero(detector["recognised"].to_numpy())
+    row = int(recognised[0]) if recognised.size else int(np.nanargmax(readings["fx"].to_numpy()))
+    edges = [0, *back.tolist(), len(t)]
+    place = int(np.searchsorted(edges, row, side="right"))
+    start, end = edges[place - 1], edges[place]
+    tables = {name: flight.tables[name].iloc[start:end] for name in ("accelerometer", "detector")}
+    found = [float(t[i]) for i in recognised if start <= i < end]
+    recording = {**flight.score["recording"], "detections": found}
+    return replace(flight, tables={**flight.tables, **tables}, score={**flight.score, "recording": recording})
 
 
 def _words(flight: "Flight") -> str:

@@ -14,7 +14,10 @@ limit about as often as exp(-2 δ h/(σ² T)), T the sample's period: what is fa
     κ       15 ms: r = 0.9 g in noise of 1 g gives 13.4 g·ms, where a run on the centrifuge at 4.1 g passes c by noise
     h_max   16 g·ms: vibration of 2-3 g would ask for 19-22, more than a weak launch of 0.1 s adds
 
-At rates below 111 Hz h_min is what one sample adds, so that two are needed, down to 62 Hz, where it has reached h_max.
+At rates below 222 Hz h_min is what two samples add, up to 10 g·ms, and below 100 Hz what one adds; so is h_max below
+62 Hz. So one sample alone never decides, which in readings slower than shocks and vibration may be anything, nor do two
+at 200 Hz, which a shock that was filtered before it was sampled fills. `confirm` = false leaves the limits as they are:
+20 ms sooner at 50 Hz, at thousands of alarms an hour in vibration that was not filtered (`uavsim.studies.low_rates`).
 It begins rough, with h_max, so that nothing is decided soon before it is known to be smooth, and what is odd about a
 sample (NaN, a shock) raises the limit. m follows at a bounded rate, so that a shock is forgotten soon. Sources: as
 `cusum`; the exponent is Lorden's, Ann. Math. Statist. 42 (1971) 1897; the limit's rule and its numbers are this
@@ -38,6 +41,7 @@ if TYPE_CHECKING:
     from uavsim.onboard.launch.settings import DetectorSettings
 
 G_MS = 1e-3 * GRAVITY  # m/s in 1 g·ms
+FILLED = 10.0 * G_MS  # m/s, what a shock adds that was filtered below 80 Hz: in 5 h of the mix at 200 Hz 9 are too few
 BELOW = 0.1 * GRAVITY  # m/s², of a threshold that samples exceed: where the sum begins to grow instead
 
 
@@ -63,6 +67,8 @@ class AdaptiveCusumSettings:
         Time constant of the short mean, s.
     memory : float
         Time constant of the roughness, s; at least three periods of the accelerometer are taken.
+    confirm : bool
+        Whether one sample alone never decides, which below 222 Hz raises the limits.
     """
 
     reference: Force | None = None
@@ -73,6 +79,7 @@ class AdaptiveCusumSettings:
     gain: Time = 0.015
     mean: Time = 0.002
     memory: Annotated[float, Interval(gt=0.0, le=100.0)] = 0.2
+    confirm: bool = True
 
 
 class AdaptiveCusum(OneAxis):
@@ -87,11 +94,13 @@ class AdaptiveCusum(OneAxis):
     rise, fall : float
         Bounds of what a sample adds and takes off, m/s²; 1 g and 1.5 g.
     limit, highest : float
-        h_min and h_max, m/s; 9 and 16 g·ms. h_min is at least what one sample adds, as far as h_max allows.
+        h_min and h_max, m/s; 9 and 16 g·ms, and at low rates more, if a sample has to be confirmed.
     gain : float
         κ, limit over roughness, s.
     mean, memory : float
         τ_m and τ_r, s. The memory is at least three nominal periods.
+    confirm : bool
+        Whether one sample alone never decides.
     axis : str
         Signed body axis that points along the launch.
 
@@ -152,6 +161,7 @@ class AdaptiveCusum(OneAxis):
         gain: float = 0.015,
         mean: float = 0.002,
         memory: float = 0.2,
+        confirm: bool = True,
         axis: Axis = "+x",
     ) -> None:
         require(isfinite(reference), "reference must be finite")
@@ -160,8 +170,9 @@ class AdaptiveCusum(OneAxis):
         require(all(0.0 < x < inf for x in (mean, memory)), "mean and memory must be above 0 s")
         require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
         self._reference, self._rise, self._fall = reference, rise, -fall
-        alone = min(rise / rate, highest)  # what one sample adds
-        self._least, self._highest = max(limit, alone) * ROUNDING, highest * ROUNDING  # reached is not passed
+        alone = rise / rate if confirm else 0.0  # what one sample adds
+        least = max(limit, alone, min(2.0 * alone, FILLED))
+        self._least, self._highest = least * ROUNDING, max(highest, least) * ROUNDING  # reached is not passed
         self._gain, self._most = gain, 2.0 * highest / gain
         self._follow, self._forget = 1.0 / mean, 1.0 / max(memory, GAP_PERIODS * ROUNDING / rate)
         super().__init__(rate, axis)

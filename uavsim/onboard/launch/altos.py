@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from math import isfinite, nan
 from typing import Annotated
 
-import numpy as np
 from annotated_types import Interval
 
-from uavsim.onboard.launch.autopilot import BLOCK, NO_MEAN, RailMean, need_of, on_rail, plausible
+from uavsim.onboard.launch.autopilot import NO_MEAN, RestMean, need_of, on_rail, plausible
 from uavsim.onboard.launch.axis import OneAxis
 from uavsim.onboard.launch.bounds import Force
 from uavsim.onboard.launch.compiled import Counts, Forces, Loop, Numbers, Reals, Wholes, compiled, wide
-from uavsim.onboard.launch.detector import ROUNDING, Axis, require
+from uavsim.onboard.launch.detector import Axis, require
 from uavsim.onboard.launch.kinds import UPWARDS, Level, Second, one_axis
 from uavsim.onboard.plausible import MOST_FORCE
 
@@ -73,12 +72,12 @@ class AltOs(OneAxis):
         self._acceleration, self._speed = acceleration, speed
 
     def _clear(self) -> None:
-        self._mean = RailMean()
+        self._mean = RestMean()
         self.gained = 0.0
 
     def _take(self, f: float, dt: float, late: bool) -> bool:
         self._mean.add(f, dt)
-        a = f - self._mean.before if plausible(f) else nan
+        a = f - self._mean.gravity if plausible(f) else nan
         if late:
             self.gained = 0.0
         if a != a:
@@ -89,35 +88,35 @@ class AltOs(OneAxis):
 
     def loop(self) -> Loop:
         """Return the same rule over arrays."""
-        return Loop(_loop, (self._acceleration, self._speed, self._period, BLOCK, ROUNDING), x=(*NO_MEAN, 0.0))
+        return Loop(_loop, (self._acceleration, self._speed, self._period), x=(*NO_MEAN, 0.0))
 
 
 @compiled
 def _loop(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
-    """`AltOs`: p threshold, speed, period, block, rounding; x mean on the rail, gained."""
-    threshold, speed, period, block, rounding = p
-    before, last, summed, time, gained = x[0], x[1], x[2], x[3], x[4]
+    """`AltOs`: p threshold, speed, period; x mean at rest, gained."""
+    threshold, speed, period = p
+    mean, known, summed, time, gained = x[0], x[1], x[2], x[3], x[4]
     first, alarms, then = y[0], 0, (k0 - 1) / rate
     for i in range(f.size):
         v, t = wide(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
-        before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
-        a = v - before
+        mean, known, summed, time = on_rail(v, dt, mean, known, summed, time)
+        a = v - mean
         if not (a == a and abs(v) < MOST_FORCE):
             continue
         gained += a * dt
         if not gained > 0.0:
             gained = 0.0
         if a > threshold and gained > speed:
-            before = last = np.nan
-            summed = time = gained = 0.0
+            mean = nan
+            known = summed = time = gained = 0.0
             first = k0 + i + 1
             out[alarms] = k0 + i
             alarms += 1
             if alarms == out.size:
                 break
-    x[0], x[1], x[2], x[3], x[4] = before, last, summed, time, gained
+    x[0], x[1], x[2], x[3], x[4] = mean, known, summed, time, gained
     y[0] = first
     return alarms
 

@@ -53,12 +53,11 @@ class OneAxis:
 
     def __init__(self, rate: float, axis: Axis = "+x") -> None:
         require(isfinite(rate) and rate > 0.0, "rate must be above 0 Hz")
-        require(axis in get_args(Axis), f"axis must be one of {', '.join(get_args(Axis))}")
         self._period = 1.0 / rate
         self._longest = GAP_PERIODS * ROUNDING / rate
         self._stamps = Stamps(jump(rate))
         self._forward = axis == "+x"
-        self._index, self._sign = "xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0
+        self._index, self._sign = signed(axis)
         self.reset()
 
     def reset(self) -> None:
@@ -131,6 +130,12 @@ class Counting(OneAxis):
     def _count(self, f: float) -> bool:
         """Count a sample of the force f, m/s², which may be NaN or implausible; True if it recognises."""
         raise NotImplementedError
+
+
+def signed(axis: Axis) -> tuple[int, float]:
+    """Return the number of a signed body axis, 0, 1, 2 = x, y, z, and its sign."""
+    require(axis in get_args(Axis), f"axis must be one of {', '.join(get_args(Axis))}")
+    return "xyz".index(axis[1]), -1.0 if axis[0] == "-" else 1.0
 
 
 def whole(seconds: float, rate: float, name: str) -> int:

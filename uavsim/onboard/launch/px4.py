@@ -7,9 +7,7 @@ axis, since then at the magnitude. What is left out of the real one is said in `
 from dataclasses import dataclass
 from math import isfinite, nan, sqrt
 
-import numpy as np
-
-from uavsim.onboard.launch.autopilot import BLOCK, LOOP, NO_MEAN, Periodic, RailMean, need_of, on_rail
+from uavsim.onboard.launch.autopilot import LOOP, NO_MEAN, Gravity, Periodic, need_of, on_rail
 from uavsim.onboard.launch.bounds import Force, Time
 from uavsim.onboard.launch.compiled import Counts, Forces, Loop, Numbers, Reals, Wholes, compiled, wide
 from uavsim.onboard.launch.detector import ROUNDING, Axis, require
@@ -57,26 +55,35 @@ class Px4(Periodic):
     A force that is NaN or implausible is not above.
     """
 
-    __slots__ = ("_acceleration", "_exceeded", "_held", "_mean")
+    __slots__ = ("_acceleration", "_exceeded", "_gravity", "_held")
 
     def __init__(self, rate: float, *, acceleration: float = 30.0, time: float = 0.050, axis: Axis = "+x") -> None:
+        self._gravity = self._felt_along(axis)
         super().__init__(rate, LOOP, axis)
         require(isfinite(acceleration), "acceleration must be finite")
         require(isfinite(time) and time > 0.0, "time must be above 0 s")
         self._acceleration, self._exceeded = acceleration, time * ROUNDING
 
+    @staticmethod
+    def _felt_along(axis: Axis) -> Gravity:
+        return Gravity(axis)
+
+    def attitude(self, roll: float, pitch: float) -> None:
+        """Take an attitude, rad, by which gravity is taken off from now on; NaN: by the mean again."""
+        self._gravity.attitude(roll, pitch)
+
     def _clear(self) -> None:
         super()._clear()
-        self._mean = RailMean()
+        self._gravity.clear()
         self._held = 0.0
 
     def _watch(self, f: float, dt: float, late: bool) -> None:
-        self._mean.add(f, dt)
+        self._gravity.means[0].add(f, dt)
         if late:
             self._held = 0.0
 
     def _run(self, f: float, elapsed: float) -> bool:
-        return self._judge(f - self._mean.before if f < MOST_FORCE else nan, elapsed)
+        return self._judge(f - self._gravity.along() if f < MOST_FORCE else nan, elapsed)
 
     def _judge(self, a: float, elapsed: float) -> bool:
         self._held = self._held + min(max(elapsed, 0.010), 0.050) if a > self._acceleration else 0.0
@@ -84,8 +91,8 @@ class Px4(Periodic):
         return self._held > self._exceeded
 
     def loop(self) -> Loop:
-        """Return the same rule over arrays."""
-        p = self._acceleration, self._exceeded, self._interval, self._period, BLOCK, ROUNDING
+        """Return the same rule over arrays, by the mean of the force at rest."""
+        p = self._acceleration, self._exceeded, self._interval, self._period
         return Loop(_loop, p, x=(*NO_MEAN, 0.0, 0.0))
 
 
@@ -95,11 +102,14 @@ class Px4Norm(Px4):
     A sample that is NaN or implausible along any axis is not above, and is left out of the mean.
     """
 
-    __slots__ = ("_blocks", "_felt")
+    __slots__ = ("_felt",)
+
+    @staticmethod
+    def _felt_along(axis: Axis) -> Gravity:
+        return Gravity("+x", "+y", "+z")
 
     def _clear(self) -> None:
         super()._clear()
-        self._blocks = RailMean(), RailMean(), RailMean()
         self._felt = 0.0, 0.0, 0.0
 
     def step(self, t: float, fx: float, fy: float, fz: float) -> bool:
@@ -110,7 +120,7 @@ class Px4Norm(Px4):
         return super().step(t, fx, fy, fz)
 
     def _watch(self, f: float, dt: float, late: bool) -> None:
-        x, y, z = self._blocks
+        x, y, z = self._gravity.means
         fx, fy, fz = self._felt
         if fx == fx:
             x.add(fx, dt)
@@ -120,49 +130,51 @@ class Px4Norm(Px4):
             self._held = 0.0
 
     def _run(self, f: float, elapsed: float) -> bool:
-        x, y, z = (felt - block.before for felt, block in zip(self._felt, self._blocks, strict=True))
+        x, y, z = (felt - self._gravity.along(axis) for axis, felt in enumerate(self._felt))
         return self._judge(sqrt(x * x + y * y + z * z), elapsed)
 
     def loop(self) -> Loop:
-        """Return the same rule over arrays."""
-        p = self._acceleration, self._exceeded, self._interval, self._period, BLOCK, ROUNDING
-        return Loop(_loop_of_norm, p, x=(nan,) * 6 + (0.0,) * 6, rows=("+x", "+y", "+z"))
+        """Return the same rule over arrays, by the mean of the force at rest."""
+        p = self._acceleration, self._exceeded, self._interval, self._period
+        return Loop(_loop_of_norm, p, x=(*NO_MEAN * 3, 0.0, 0.0), rows=("+x", "+y", "+z"))
 
 
 @compiled
 def _loop(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
-    """`Px4`: p threshold, hold, interval, period, block, rounding; x mean on the rail, elapsed, held."""
-    threshold, hold, interval, period, block, rounding = p
-    before, last, summed, time, elapsed, held = x[0], x[1], x[2], x[3], x[4], x[5]
+    """`Px4`: p threshold, hold, interval, period; x mean at rest, elapsed, held."""
+    threshold, hold, interval, period = p
+    mean, known, summed, time, elapsed, held = x[0], x[1], x[2], x[3], x[4], x[5]
     first, alarms, then = y[0], 0, (k0 - 1) / rate
     for i in range(f.size):
         v, t = wide(f[i]), (k0 + i) / rate
         dt = t - then if k0 + i != first else period
         then = t
-        before, last, summed, time = on_rail(v, dt, before, last, summed, time, block, rounding)
+        mean, known, summed, time = on_rail(v, dt, mean, known, summed, time)
         elapsed += dt
         if elapsed < interval:
             continue
         worth, elapsed = min(max(elapsed, 0.010), 0.050), 0.0
-        held = held + worth if v - before > threshold and v < MOST_FORCE else 0.0
+        held = held + worth if v - mean > threshold and v < MOST_FORCE else 0.0
         if held > hold:
-            before = last = np.nan
-            summed = time = elapsed = held = 0.0
+            mean = nan
+            known = summed = time = elapsed = held = 0.0
             first = k0 + i + 1
             out[alarms] = k0 + i
             alarms += 1
             if alarms == out.size:
                 break
-    x[0], x[1], x[2], x[3], x[4], x[5], y[0] = before, last, summed, time, elapsed, held, first
+    x[0], x[1], x[2], x[3], x[4], x[5], y[0] = mean, known, summed, time, elapsed, held, first
     return alarms
 
 
 @compiled
 def _loop_of_norm(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Reals, y: Wholes, out: Wholes) -> int:
-    """`Px4Norm`, f (3, n): as the other; x means before, last means, sums, time, elapsed, held."""
-    threshold, hold, interval, period, block, rounding = p
-    bx, by, bz, lx, ly, lz = x[0], x[1], x[2], x[3], x[4], x[5]
-    sx, sy, sz, time, elapsed, held = x[6], x[7], x[8], x[9], x[10], x[11]
+    """`Px4Norm`, f (3, n): as the other; x the means of x, y and z, elapsed, held."""
+    threshold, hold, interval, period = p
+    mx, kx, sx, tx = x[0], x[1], x[2], x[3]
+    my, ky, sy, ty = x[4], x[5], x[6], x[7]
+    mz, kz, sz, tz = x[8], x[9], x[10], x[11]
+    elapsed, held = x[12], x[13]
     first, alarms, then = y[0], 0, (k0 - 1) / rate
     for i in range(f.shape[1]):
         t = (k0 + i) / rate
@@ -171,28 +183,27 @@ def _loop_of_norm(f: Forces, k0: int, rate: float, p: Numbers, q: Counts, x: Rea
         fx, fy, fz = wide(f[0, i]), wide(f[1, i]), wide(f[2, i])
         sound = abs(fx) < MOST_FORCE and abs(fy) < MOST_FORCE and abs(fz) < MOST_FORCE
         if sound:
-            time += dt
-            sx, sy, sz = sx + fx * dt, sy + fy * dt, sz + fz * dt
-            if time * rounding >= block:
-                bx, by, bz, lx, ly, lz = lx, ly, lz, sx / time, sy / time, sz / time
-                sx = sy = sz = time = 0.0
+            mx, kx, sx, tx = on_rail(fx, dt, mx, kx, sx, tx)
+            my, ky, sy, ty = on_rail(fy, dt, my, ky, sy, ty)
+            mz, kz, sz, tz = on_rail(fz, dt, mz, kz, sz, tz)
         elapsed += dt
         if elapsed < interval:
             continue
         worth, elapsed = min(max(elapsed, 0.010), 0.050), 0.0
-        a, b, c = fx - bx, fy - by, fz - bz
+        a, b, c = fx - mx, fy - my, fz - mz
         held = held + worth if sound and sqrt(a * a + b * b + c * c) > threshold else 0.0
         if held > hold:
-            bx = by = bz = lx = ly = lz = np.nan
-            sx = sy = sz = time = elapsed = held = 0.0
+            mx = my = mz = nan
+            kx = sx = tx = ky = sy = ty = kz = sz = tz = elapsed = held = 0.0
             first = k0 + i + 1
             out[alarms] = k0 + i
             alarms += 1
             if alarms == out.size:
                 break
-    x[0], x[1], x[2], x[3], x[4], x[5] = bx, by, bz, lx, ly, lz
-    x[6], x[7], x[8], x[9], x[10], x[11] = sx, sy, sz, time, elapsed, held
-    y[0] = first
+    x[0], x[1], x[2], x[3] = mx, kx, sx, tx
+    x[4], x[5], x[6], x[7] = my, ky, sy, ty
+    x[8], x[9], x[10], x[11] = mz, kz, sz, tz
+    x[12], x[13], y[0] = elapsed, held, first
     return alarms
 
 
