@@ -429,7 +429,7 @@ class AidedFilter(Estimator):
         self._base = self.time, self._u, self._w
         if "total" in broken or "static" in broken:  # then nothing has been seen of the wind
             onset.know()
-            self._wind.forget()
+            self._wind.drop(energy, self._air.heat)
             energy.restart(0.0, self._settings.wind_sd**2)
         for channel, kind in broken.items():
             if channel == "thermometer":
@@ -470,7 +470,7 @@ class AidedFilter(Estimator):
 
     def _not_risen(self, kind: str) -> None:
         """Flag the total port in the stroke. What it has told of the wind is void, and V is what the force gave."""
-        self._wind.forget()
+        self._wind.drop(self.energy, self._air.heat)
         begun, _, w = self._base
         since, gained = self.time - begun, self._speed_since_launch()
         rest = self._rest_sd * since
@@ -505,9 +505,8 @@ class AidedFilter(Estimator):
         rest = self._rest.result(start)
         self._rest_sd = rest[1]
         at, density = (static, static / self._air.gas) if known else (airdata.STANDARD_PRESSURE, 0.0)
-        tied = 0.0
         if self._wind_known:
-            along, along_sd, tare_variance, tied = self._look_at_wind(start, at, density, tare_variance)
+            along, along_sd, tare_variance = self._look_at_wind(start, at, tare_variance)
         else:
             self._wind.forget()
             along_sd = self._onset.look(self._on_the_rail(start), (self._tare, tare_variance), density)
@@ -519,7 +518,6 @@ class AidedFilter(Estimator):
             static=(at, AROUND if known else ANYWHERE),
             difference_sd=sqrt(tare_variance),
         )
-        core.tie_difference(tied)
         self._air.ground = core.p
         self._angles.forget()
         return core
@@ -529,10 +527,8 @@ class AidedFilter(Estimator):
         begun = max(self._tare_end, end - longest)
         return rest_difference(self._rows, start=begun, end=end, each=self._pair_variance)
 
-    def _look_at_wind(
-        self, start: float, static: float, density: float, tare_variance: float
-    ) -> tuple[float, float, float, float]:
-        """Return u₀, its standard deviation, the variance of d and its covariance with u₀; see `rail_wind`."""
+    def _look_at_wind(self, start: float, static: float, tare_variance: float) -> tuple[float, float, float]:
+        """Return u₀, its standard deviation, and the variance of d; see `rail_wind`."""
         air, noise = self._air, self._noise
         self._onset.know()
         tared = noise.covered and self._tare_end > -inf
@@ -545,13 +541,11 @@ class AidedFilter(Estimator):
             seen = self._waiting.tare()
             seen = seen if seen[1] > 0.0 else None
         gusts = air.gust * max(self._wind.speed_declared, SLOWEST) * AGO
-        along, sd, off, variance, tied = self._wind.begin(
-            seen, tared=tared, air=(static, air.heat, gusts), density=density
-        )
+        along, sd, off, variance = self._wind.begin(seen, tared=tared, air=(static, air.heat, gusts))
         if tared or seen is None:
-            return along, sd, tare_variance, tied
+            return along, sd, tare_variance
         self._tare = off
-        return along, sd, variance + noise.walk**2 * AGO, tied
+        return along, sd, variance + noise.walk**2 * AGO
 
     def _begin_in_flight(self, t: float) -> None:
         """Begin anew at `t`, s: V by the next total pressure, both ports believed, climb and bias not known."""
@@ -951,7 +945,7 @@ class AidedFilter(Estimator):
 
     def _leave_rail(self) -> None:
         """Be told that the push is over: from here on the filter's airspeed is along the path."""
-        self._wind.leave(self.energy)
+        self._wind.leave(self.energy, self._air.heat)
         self._angles.leave(self.time, self._wind.side)
 
     def _off(self) -> tuple[float, float, float]:

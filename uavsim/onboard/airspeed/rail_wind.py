@@ -1,24 +1,30 @@
 """The wind on the rail: along it u₀, across it c, and the airspeed V = √(u² + c²) until the rail is left.
 
 The push changes the air's speed along the rail alone, u = u₀ + ∫(f_x − b − s) dt. So the filter's airspeed is u there,
-and c is kept beside it, with its variance and its covariances with u and with the pair's difference d. Both ports read
-what V and the angle make of them (`head_errors`).
+and c is kept beside it, with its variance and its covariances with the state. Both ports read what V and the angle make
+of them (`head_errors`).
 
 u₀ and c are believed as the environment declares them, at the height of the head on the rail, ± the turbulence and a
 share of the mean wind. After a covered tare the pair reads
 
     D = P(u₀, c) = q_c(V) (c_t − c_s)
 
-which corrects both. In the wind, or without a tare, the pair's difference at rest is d + P(u₀, c) instead: d is known
-as well as the wind, and its error goes with that of the wind. E[P] is P of the means and ½ ρ (σ_u² + σ_c²).
+which corrects both. In the wind, or without a tare, the pair's difference at rest is e = d + P(u₀, c) instead, and e is
+all that is known. Until the rail is left the filter's d is this e, u₀ is a second quantity beside the state, and
 
-**At the rail's end**, when the push is over, the path turns into the wind: V ← √(u² + c²), and the covariances of V are
-those of u times u/V and those of c times c/V.
+    p_t − p_s = e + P(u, c) − P(u₀, c) = e + ½ρ (u − u₀)(u + u₀)    of an ideal head in air that does not compress
+
+The force knows u − u₀, so that is a straight line in u₀: whatever the wind was, the push finds it without a bend. (With
+d and u₀ for states it bends by ½ρσ² of each, by the same amount in each reading, and readings that count it as noise
+of their own know d to a tenth of what they should.)
+
+**At the rail's end**, when the push is over, d = e − P(u₀, c), and the path turns into the wind: V ← √(u² + c²), with
+half the curvatures times the variances, and covariances by the slopes.
 """
 
 from math import hypot, sqrt
 
-from uavsim.onboard.airspeed.energy import Beside, EnergyFilter
+from uavsim.onboard.airspeed.energy import Beside, EnergyFilter, Others
 from uavsim.onboard.airspeed.energy_model import isentropic
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.head_errors import HeadErrors
@@ -60,6 +66,7 @@ class RailWind:
         "_head",
         "_height",
         "_mean",
+        "_rest",
         "_sd",
         "_side",
         "_start",
@@ -82,6 +89,7 @@ class RailWind:
         self._start, self._at = 0.0, aided.launch_height
         self._height = self._at
         self._beside = Beside()
+        self._rest: Beside | None = None  # u₀, where the pair's difference at rest has P(u₀, c) in it
 
     @property
     def speed_declared(self) -> float:
@@ -90,7 +98,12 @@ class RailWind:
 
     def forget(self) -> None:
         """Be told that the aircraft is in flight, wherever the filter begins."""
-        self.on, self.side = False, 0.0
+        self.on, self.side, self._rest = False, 0.0, None
+
+    def drop(self, energy: EnergyFilter, heat: float) -> None:
+        """Be told that nothing is known of the wind but what was declared; the filter gets its d back."""
+        self._resolve(energy, heat)
+        self.forget()
 
     def begin(
         self,
@@ -98,8 +111,7 @@ class RailWind:
         *,
         tared: bool,
         air: tuple[float, float, float],
-        density: float,
-    ) -> tuple[float, float, float, float, float]:
+    ) -> tuple[float, float, float, float]:
         """Begin on the rail.
 
         Parameters
@@ -111,14 +123,11 @@ class RailWind:
             Whether a covered tare has been taken off, so that what is left is the wind's.
         air : tuple of float
             Static pressure, Pa, 7 R T, m²/s², and by how much gusts widen the wind in `AGO`, m²/s².
-        density : float
-            Of the air, kg/m³.
 
         Returns
         -------
         tuple of float
-            u₀ and its standard deviation, m/s; what is to be taken off the pair's difference, Pa, its variance, Pa²,
-            and the covariance of u₀ with what is left, Pa·m/s.
+            u₀ and its standard deviation, m/s; what is to be taken off the pair's difference, Pa, and its variance, Pa².
         """
         static, heat, gusts = air
         self.on = False
@@ -126,19 +135,19 @@ class RailWind:
             seen = seen[0], seen[1] + self.unknown(self._mean[0], static, heat)
         (u, c), one = self._mean, self._sd * self._sd
         uu, cc, uc = one, one, 0.0
-        off = variance = ud = cd = 0.0
+        off = variance = 0.0
+        self._rest = None
         if seen is not None and tared:
             u, c, uu, cc, uc = self._corrected(seen, static, heat)
         elif seen is not None:
-            felt, hu, hc = self._at_rest(u, c, static, heat)
-            off = seen[0] - felt - 0.5 * density * (uu + cc)
-            variance = seen[1] + hu * hu * uu + hc * hc * cc + 0.5 * density * density * (uu * uu + cc * cc)
-            ud, cd = -hu * uu, -hc * cc
+            _, _, hc = self._at_rest(u, c, static, heat)
+            off, variance = seen[0], seen[1] + hc * hc * gusts
+            self._rest = Beside(u, uu, of_v=uu)
         self.on, self.pushed, self.side = True, False, 0.0
         uu, cc = uu + gusts, cc + gusts
         self._start, self._height = u, self._at
-        self._beside = Beside(c, cc, of_v=uc, of_d=cd)
-        return u, sqrt(uu), off, variance, ud
+        self._beside = Beside(c, cc, of_v=uc)
+        return u, sqrt(uu), off, variance
 
     def unknown(self, u: float, static: float, heat: float) -> float:
         """Return the variance of what is not known of the static port's error on the rail, Pa²."""
@@ -157,14 +166,15 @@ class RailWind:
         reading, variance = seen
         (u, c), one = self._mean, self._sd * self._sd
         at_u, at_c, hu, hc, spread = u, c, 0.0, 0.0, 1.0
+        uu = cc = uc = 0.0
+        bend = 7.0 * static / heat  # as in `total`: the ridge of equal V is a circle, and its mean is within
         for _ in range(TURNS):
             felt, hu, hc = self._at_rest(at_u, at_c, static, heat)
             spread = (hu * hu + hc * hc) * one + variance
-            shift = (reading - felt - hu * (u - at_u) - hc * (c - at_c)) / spread
+            shift = (reading - felt - 0.5 * bend * (uu + cc) - hu * (u - at_u) - hc * (c - at_c)) / spread
             at_u, at_c = u + hu * one * shift, c + hc * one * shift
-        gain = one * one / spread
-        bend = 7.0 * static / heat  # as in `total`: the ridge of equal V is a circle
-        uu, cc, uc = one - gain * hu * hu, one - gain * hc * hc, gain * hu * hc
+            gain = one * one / spread
+            uu, cc, uc = one - gain * hu * hu, one - gain * hc * hc, gain * hu * hc
         gain = one * one / (spread + 0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc))
         return at_u, at_c, one - gain * hu * hu, one - gain * hc * hc, -gain * hu * hc
 
@@ -201,6 +211,8 @@ class RailWind:
     ) -> None:
         """Go on, before `EnergyFilter.predict`, whose arguments these are; gusts widen c as they widen u."""
         energy.predict_beside(self._beside, dt, gained, variance, density, railed)
+        if self._rest is not None:
+            energy.predict_beside(self._rest, dt, gained, 0.0, density, railed)
         if self.pushed:  # up the rail the wind across grows, too
             climb = self.gained(energy.v) * energy.s / GRAVITY
             self._height += climb * dt
@@ -227,19 +239,32 @@ class RailWind:
             return total - static if relative else total
 
         felt = read(u, c)
-        slopes = (read(u + SMALL, c) - felt) / SMALL, (read(u, c + SMALL) - felt) / SMALL
+        hv, hc = (read(u + SMALL, c) - felt) / SMALL, (read(u, c + SMALL) - felt) / SMALL
         # E[h] is above h of the means by half its curvature times the variances, and scatters by as much
-        bend, uu, cc, uc = 7.0 * p / heat, energy.vv, self._beside.variance, self._beside.of_v
-        variance += 0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc)
-        above = reading - felt - 0.5 * bend * (uu + cc)
-        return energy.total_of_two(above, variance, pushed, slopes, self._beside)
+        bend, uu = 7.0 * p / heat, energy.vv
+        others: Others
+        if self._rest is None:
+            cc, uc = self._beside.variance, self._beside.of_v
+            variance += 0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc)
+            above = reading - felt - 0.5 * bend * (uu + cc)
+            others = ((hc, self._beside),)
+        else:
+            rest, both = self._rest.variance, self._rest.of_v
+            at_rest, hu, hc_rest = self._at_rest(self._rest.value, c, p, heat)
+            variance += 0.5 * bend * bend * max(uu * uu - 2.0 * both * both + rest * rest, 0.0)
+            above = reading - felt + at_rest - 0.5 * bend * (uu - rest)
+            others = (hc - hc_rest, self._beside), (-hu, self._rest)
+        return energy.total_beside(above, variance, pushed, hv, others)
 
     def static(self, energy: EnergyFilter, reading: float, variance: float, ahead: float, heat: float) -> float:
         """Take a static pressure, whose port the wind blows at, as `EnergyFilter.static` does; return the NIS."""
         c = self._beside.value
         off = self._ports(energy.v, c, energy.p, heat)[1] - energy.p
         more = self._ports(energy.v, c + SMALL, energy.p, heat)[1] - energy.p
-        return energy.static_of_two(reading - off, variance, ahead, (more - off) / SMALL, self._beside)
+        others: Others = (((more - off) / SMALL, self._beside),)
+        if self._rest is not None:
+            others = (*others, (0.0, self._rest))
+        return energy.static_beside(reading - off, variance, ahead, others)
 
     def told(self, u: float, variance: float) -> tuple[float, float]:
         """Return V, m/s, and its variance, m²/s², of u and its variance."""
@@ -248,16 +273,42 @@ class RailWind:
         if v < SMALL:
             return v, variance + self._beside.variance
         x, y = u / v, c / v
+        across = self._across(x, y, variance)
         found = x * x * variance + 2.0 * x * y * self._beside.of_v + y * y * self._beside.variance
-        return v, found if found > 0.0 else 0.0
+        bend = across / v if across < v * v else v  # where V is not known better than that it bends no further
+        return v + 0.5 * bend, (found if found > 0.0 else 0.0) + 0.5 * bend * bend
 
-    def leave(self, energy: EnergyFilter) -> None:
-        """Turn the filter's airspeed from u into V: the rail ends."""
-        self.on = False
+    def _across(self, x: float, y: float, variance: float) -> float:
+        """Variance across (x, y), the direction of V: by it V is greater than √(u² + c²) of the means."""
+        beside = self._beside
+        across = y * y * variance - 2.0 * x * y * beside.of_v + x * x * beside.variance
+        return across if across > 0.0 else 0.0
+
+    def leave(self, energy: EnergyFilter, heat: float) -> None:
+        """Turn the filter's airspeed from u into V, and its d into that of the pair: the rail ends."""
         c = self._beside.value
-        v, variance = self.told(energy.v, energy.vv)
-        if v < SMALL:
+        length = hypot(energy.v, c)
+        self._resolve(energy, heat)
+        self.on = False
+        if length < SMALL:
             energy.widen_speed(self._beside.variance)
             return
-        self.side = c * self._side / v
-        energy.turn(v, variance, energy.v / v, c / v, self._beside)
+        v, variance = self.told(energy.v, energy.vv)
+        self.side = c * self._side / length
+        energy.turn(v, variance, energy.v / length, c / length, self._beside)
+
+    def _resolve(self, energy: EnergyFilter, heat: float) -> None:
+        """Make d of e: P(u₀, c) is taken off."""
+        rest, self._rest = self._rest, None
+        if rest is None:
+            return
+        beside = self._beside
+        felt, hu, hc = self._at_rest(rest.value, beside.value, energy.p, heat)
+        bend, uu, cc, uc = 7.0 * energy.p / heat, rest.variance, beside.variance, rest.of_other
+        energy.resolve_difference(
+            -felt - 0.5 * bend * (uu + cc),
+            0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc),
+            ((-hu, rest), (-hc, beside)),
+        )
+        if energy.v > beside.value:  # c² is in V, too
+            energy.tie_difference(-0.5 * bend * cc * cc / energy.v)
