@@ -264,7 +264,7 @@ class EnergyFilter(EnergyModel):
             c.of_s -= gain * gs
             c.of_d -= gain * gd
             c.of_k -= gain * gk
-        if len(of) == 2:  # noqa: PLR2004 - a pair
+        if len(of) == 2:
             (one, c), (two, other) = of
             c.of_other = other.of_other = c.of_other - one * two / spread
         return nis

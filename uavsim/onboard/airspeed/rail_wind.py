@@ -12,13 +12,14 @@ share of the mean wind. After a covered tare the pair reads
 which corrects both. In the wind, or without a tare, the pair's difference at rest is e = d + P(u₀, c) instead, and e is
 all that is known. Until the rail is left the filter's d is this e, u₀ is a second quantity beside the state, and
 
-    p_t − p_s = e + P(u, c) − P(u₀, c) = e + ½ρ (u − u₀)(u + u₀)    of an ideal head in air that does not compress
+    p_t − p_s = e + P(u, c) − P(u₀, c̄) = e + ½ρ (u − u₀)(u + u₀) + ½ρ c²    of an ideal head, less what M² makes
 
 The force knows u − u₀, so that is a straight line in u₀: whatever the wind was, the push finds it without a bend. (With
 d and u₀ for states it bends by ½ρσ² of each, by the same amount in each reading, and readings that count it as noise
-of their own know d to a tenth of what they should.)
+of their own know d to a tenth of what they should.) What c was at rest differs from the c̄ that is declared, and from c
+in the push, for a gust across is a few metres long: P(u₀, c) − P(u₀, c̄) stays in e, with its variance.
 
-**At the rail's end**, when the push is over, d = e − P(u₀, c), and the path turns into the wind: V ← √(u² + c²), with
+**At the rail's end**, when the push is over, d = e − P(u₀, c̄), and the path turns into the wind: V ← √(u² + c²), with
 half the curvatures times the variances, and covariances by the slopes.
 """
 
@@ -135,19 +136,30 @@ class RailWind:
             seen = seen[0], seen[1] + self.unknown(self._mean[0], static, heat)
         (u, c), one = self._mean, self._sd * self._sd
         uu, cc, uc = one, one, 0.0
-        off = variance = 0.0
+        off = variance = cd = 0.0
         self._rest = None
         if seen is not None and tared:
             u, c, uu, cc, uc = self._corrected(seen, static, heat)
         elif seen is not None:
-            _, _, hc = self._at_rest(u, c, static, heat)
-            off, variance = seen[0], seen[1] + hc * hc * gusts
+            more, spread, cd = self._across_at_rest(static, heat)
+            off, variance = seen[0] - more, seen[1] + spread
             self._rest = Beside(u, uu, of_v=uu)
         self.on, self.pushed, self.side = True, False, 0.0
         uu, cc = uu + gusts, cc + gusts
         self._start, self._height = u, self._at
-        self._beside = Beside(c, cc, of_v=uc)
+        self._beside = Beside(c, cc, of_v=uc, of_d=-cd)
         return u, sqrt(uu), off, variance
+
+    def _across_at_rest(self, static: float, heat: float) -> tuple[float, float, float]:
+        """Return what c − c̄ makes of P at rest: its mean, Pa, its variance, Pa², and its covariance with c.
+
+        By Gauss and Hermite's three points, exact for a parabola, which P is in c.
+        """
+        (u, c), off = self._mean, sqrt(3.0) * self._sd
+        at_mean = self._felt(u, c, static, heat)
+        above, below = self._felt(u, c + off, static, heat) - at_mean, self._felt(u, c - off, static, heat) - at_mean
+        mean = (above + below) / 6.0
+        return mean, (above * above + below * below) / 6.0 - mean * mean, off * (above - below) / 6.0
 
     def unknown(self, u: float, static: float, heat: float) -> float:
         """Return the variance of what is not known of the static port's error on the rail, Pa²."""
@@ -180,11 +192,14 @@ class RailWind:
 
     def _at_rest(self, u: float, c: float, static: float, heat: float) -> tuple[float, float, float]:
         """Return P(u, c), Pa, and its derivatives."""
+        felt = self._felt(u, c, static, heat)
+        by_u, by_c = self._felt(u + SMALL, c, static, heat), self._felt(u, c + SMALL, static, heat)
+        return felt, (by_u - felt) / SMALL, (by_c - felt) / SMALL
+
+    def _felt(self, u: float, c: float, static: float, heat: float) -> float:
+        """Return P(u, c), Pa."""
         total, below = self._ports(u, c, static, heat)
-        by_u, below_u = self._ports(u + SMALL, c, static, heat)
-        by_c, below_c = self._ports(u, c + SMALL, static, heat)
-        felt = total - below
-        return felt, (by_u - below_u - felt) / SMALL, (by_c - below_c - felt) / SMALL
+        return total - below
 
     def _ports(self, u: float, c: float, static: float, heat: float) -> tuple[float, float]:
         """Return what both ports read of the air's speed along and across the rail, Pa: total, static."""
@@ -242,18 +257,16 @@ class RailWind:
         hv, hc = (read(u + SMALL, c) - felt) / SMALL, (read(u, c + SMALL) - felt) / SMALL
         # E[h] is above h of the means by half its curvature times the variances, and scatters by as much
         bend, uu = 7.0 * p / heat, energy.vv
-        others: Others
-        if self._rest is None:
-            cc, uc = self._beside.variance, self._beside.of_v
-            variance += 0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc)
-            above = reading - felt - 0.5 * bend * (uu + cc)
-            others = ((hc, self._beside),)
-        else:
-            rest, both = self._rest.variance, self._rest.of_v
-            at_rest, hu, hc_rest = self._at_rest(self._rest.value, c, p, heat)
-            variance += 0.5 * bend * bend * max(uu * uu - 2.0 * both * both + rest * rest, 0.0)
-            above = reading - felt + at_rest - 0.5 * bend * (uu - rest)
-            others = (hc - hc_rest, self._beside), (-hu, self._rest)
+        cc, uc = self._beside.variance, self._beside.of_v
+        spread, above = uu * uu + 2.0 * uc * uc + cc * cc, reading - felt - 0.5 * bend * (uu + cc)
+        others: Others = ((hc, self._beside),)
+        rest = self._rest
+        if rest is not None:
+            at_rest, hu, _ = self._at_rest(rest.value, self._mean[1], p, heat)
+            above += at_rest + 0.5 * bend * rest.variance
+            spread += rest.variance * rest.variance - 2.0 * rest.of_v * rest.of_v
+            others = (*others, (-hu, rest))
+        variance += 0.5 * bend * bend * (spread if spread > 0.0 else 0.0)
         return energy.total_beside(above, variance, pushed, hv, others)
 
     def static(self, energy: EnergyFilter, reading: float, variance: float, ahead: float, heat: float) -> float:
@@ -302,13 +315,6 @@ class RailWind:
         rest, self._rest = self._rest, None
         if rest is None:
             return
-        beside = self._beside
-        felt, hu, hc = self._at_rest(rest.value, beside.value, energy.p, heat)
-        bend, uu, cc, uc = 7.0 * energy.p / heat, rest.variance, beside.variance, rest.of_other
-        energy.resolve_difference(
-            -felt - 0.5 * bend * (uu + cc),
-            0.5 * bend * bend * (uu * uu + 2.0 * uc * uc + cc * cc),
-            ((-hu, rest), (-hc, beside)),
-        )
-        if energy.v > beside.value:  # c² is in V, too
-            energy.tie_difference(-0.5 * bend * cc * cc / energy.v)
+        felt, hu, _ = self._at_rest(rest.value, self._mean[1], energy.p, heat)
+        bend = 7.0 * energy.p / heat * rest.variance
+        energy.resolve_difference(-felt - 0.5 * bend, 0.5 * bend * bend, ((-hu, rest), (0.0, self._beside)))
