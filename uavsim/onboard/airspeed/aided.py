@@ -749,6 +749,8 @@ class AidedFilter(Estimator):
         """What `_advance`, `_take_static` and `_take_total` do, at once."""
         energy, density, dt = self.energy, self._air.density, to - self.time
         self._feel_shock(to)
+        if energy.learns:
+            energy.hold_difference()
         if energy.kk > 0.0:
             self._push_variance = energy.know_push()
         gained, variance = self._go(to, dt)
@@ -946,6 +948,7 @@ class AidedFilter(Estimator):
     def _leave_rail(self) -> None:
         """Be told that the push is over: from here on the filter's airspeed is along the path."""
         self._wind.leave(self.energy, self._air.heat)
+        self.energy.hold_difference()
         self._angles.leave(self.time, self._wind.side)
 
     def _off(self) -> tuple[float, float, float]:

@@ -85,7 +85,7 @@ class EnergyFilter(EnergyModel):
         self._slope_density, self._slope_time = slope_rate**2, slope_time
         self._static_density = static_walk**2
         self._difference_density = difference_walk**2
-        self._relative = 1.0 if relative else 0.0
+        self._relative, self._learns = 1.0 if relative else 0.0, 1.0
         self.b = self.d = self.k = self.innovation = 0.0
         self.taken = True
         self.v, self.s, self.p = speed, rest_force, static
@@ -109,6 +109,20 @@ class EnergyFilter(EnergyModel):
         variance, self.kk = self.kk, 0.0
         self.vk = self.bk = self.pk = self.sk = self.dk = 0.0
         return variance
+
+    @property
+    def learns(self) -> bool:
+        """Whether readings correct d."""
+        return self._learns > 0.0
+
+    def hold_difference(self) -> None:
+        """Let d be what it is from here on, and as well known; it keeps its part in what is not known of V (Schmidt).
+
+        In flight δd = −ρV δV can hardly be read: only by a change of V that the force knows. What the filter makes of
+        gusts is false, for its slopes are those of estimates that gusts have moved: with d known to 8 Pa, V drifts away
+        by 3 m/s in a minute of turbulence.
+        """
+        self._learns = 0.0
 
     def read_relative(self, relative: bool) -> None:
         """Be told whether total pressures are read relative to the static one from here on."""
