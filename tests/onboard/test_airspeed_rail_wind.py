@@ -89,17 +89,18 @@ def test_the_push_finds_the_tare_that_the_wind_has_hidden() -> None:
         u0 = 6.0 + 1.7 * miss
         settings = EstimatorSettings(aided=AidedSettings(rail_wind_along=6.0, rail_wind_sd=1.7, unfolding_rate=0.0))
         noise = NoiseModel(0.1, 0.1, 0.0, accelerometer_sd=0.1, accelerometer_rate=200.0, covered=False)
-        estimator = AidedFilter(settings, noise, (0.5, 1.5))
+        estimator, gained, before = AidedFilter(settings, noise, (0.5, 1.5)), 0.0, 0.0
         for k in range(481):
             t = k * 5e-3
-            estimator.accelerometer(t, (80.0 if 1.999 < t < 2.299 else 0.0) + 0.1 * generator.standard_normal(), 0.0, -9.6)
+            force = 80.0 if 1.999 < t < 2.299 else 0.0
+            gained, before = gained + 0.5 * (before + force) * 5e-3, force
+            estimator.accelerometer(t, force + 0.1 * generator.standard_normal(), 0.0, -9.6)
             if k == 408:
                 estimator.launched(t)
             if k % 2 == 0:
                 a, b = 0.1 * generator.standard_normal(2)
-                speed = u0 + 80.0 * min(max(t - 2.0, 0.0), 0.3)
-                estimator.step(t, STATIC + 20.0 + impact(speed) + a, STATIC + b, TEMPERATURE, t, t)
-        off = estimator._tare + estimator.energy.d - 20.0
+                estimator.step(t, STATIC + 20.0 + impact(u0 + gained) + a, STATIC + b, TEMPERATURE, t, t)
+        off = estimator._corrections.tare + estimator.energy.d - 20.0
         assert abs(off) < 3.0 * math.sqrt(estimator.energy.dd), miss
         assert math.sqrt(estimator.energy.dd) < 6.0  # by the declared wind alone ρ u₀ σ, 12.5 Pa
         assert not estimator.energy.learns
