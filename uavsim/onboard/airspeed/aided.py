@@ -77,6 +77,7 @@ from uavsim.onboard.plausible import (
     MOST_PRESSURE,
     MOST_TEMPERATURE,
 )
+from uavsim.onboard.repeats import force_row
 from uavsim.onboard.stamps import LATEST, Conversions, Stamps, jump
 
 # -- the hand-over -----------------------------------------------------------------------------------------------------
@@ -189,7 +190,9 @@ class AidedFilter(Estimator):
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
-        self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
+        self._gained = SpeedGained(
+            noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag, row=force_row(noise)
+        )
         self._believe_offset(noise.accelerometer_offset_sd)
         self._gained.end_at(*noise.accelerometer_range)
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
@@ -239,6 +242,7 @@ class AidedFilter(Estimator):
     def _watch_sensors(self, noise: NoiseModel) -> None:
         """Make what watches the sensors beside the ports."""
         self._rail, self._pause = RailCheck(noise, self._tare_end), pause(noise)
+        self._warmth = self._rail.sensors["thermometer"].row
         self._stroke, self._push_end, self._first_climb = StrokeTest(), PushEnd(), FirstClimb()
         self._shock = Shock(noise.accelerometer_sd / sqrt(max(1.0, noise.accelerometer_rate / noise.head_rate)))
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
@@ -672,7 +676,7 @@ class AidedFilter(Estimator):
             if temperature != air.temperature:
                 air.warm(temperature)
             air.measured = True
-            heard[2] = t
+            heard[2] = heard[2] if self._warmth.stuck else t
         else:
             temperature = nan
         air.at(energy.p, energy.s)
@@ -687,6 +691,7 @@ class AidedFilter(Estimator):
         if JUMPED in (total, static) and self.time > self._steady_from:
             ports.jumped(t, energy, (self.time, self._u + self._grown), total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
+        self._warmth.add(given[2] if end_static == end_static else nan)
         new_total, new_static = end_total == end_total and total, end_static == end_static and static
         if self._first_climb.open and new_static > 0:
             self._climbed(p_static, heard[1])
@@ -714,8 +719,11 @@ class AidedFilter(Estimator):
             if heard < late:
                 kind = "silent" if end != end else "range" if value == value else "invalid"
                 ports.condemn(t, self.energy, now, channel, kind)
-        warmth = "" if self._heard[2] >= late else "range" if values[2] == values[2] else "invalid"
-        force = "" if self._gained.newest >= late else "silent"
+        warmth = force = ""
+        if self._heard[2] < late:
+            warmth = "stuck" if self._warmth.stuck else "range" if values[2] == values[2] else "invalid"
+        if self._gained.newest < late:
+            force = "stuck" if self._gained.stuck else "silent"
         for i, (channel, kind) in enumerate((("accelerometer", force), ("thermometer", warmth))):
             if bool(kind) != self._muted[i]:
                 self._muted[i] = bool(kind)

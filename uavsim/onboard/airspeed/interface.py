@@ -62,6 +62,9 @@ class NoiseModel:
         By which they are rounded, Pa.
     temperature_range : tuple of float
         K: a temperature beyond it is no measurement.
+    temperature_white_sd, temperature_step, temperature_lag : float
+        Noise of one reading of the thermometer, rounding included, K; by which it is rounded, K; the time constant of
+        its digital filter, s.
     accelerometer_range : tuple of float
         m/s²: a specific force at or beyond an end has been clipped.
     accelerometer_step : float
@@ -121,6 +124,9 @@ class NoiseModel:
     total_step: Annotated[float, Ge(0.0)] = 0.0
     static_step: Annotated[float, Ge(0.0)] = 0.0
     temperature_range: tuple[float, float] = (LEAST_TEMPERATURE, MOST_TEMPERATURE)
+    temperature_white_sd: Annotated[float, Ge(0.0)] = 0.0
+    temperature_step: Annotated[float, Ge(0.0)] = 0.0
+    temperature_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     accelerometer_range: tuple[float, float] = ANY
     accelerometer_step: Annotated[float, Ge(0.0)] = 0.0
     accelerometer_white_sd: Annotated[float, Ge(0.0)] = 0.0

@@ -15,7 +15,7 @@ from uavsim.onboard.airspeed.difference import ZERO, channel_range
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.life import WORDS, SensorLife
 from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
-from uavsim.onboard.repeats import alike, longest_row
+from uavsim.onboard.repeats import alike, longest_row, warmth_row
 from uavsim.onboard.stamps import JUMP
 
 # s without a reading, after which a sensor is silent. Readings that are lost by chance, up to 7 in 10 at 100 Hz, make
@@ -71,7 +71,7 @@ class RailCheck:
         self.sensors = {
             "total": SensorLife(total, silent, total_row),
             "static": SensorLife(static, silent, static_row),
-            "thermometer": SensorLife(warmth, silent),
+            "thermometer": SensorLife(warmth, silent, warmth_row(noise)),
         }
         self.forget()
 
@@ -95,7 +95,7 @@ class RailCheck:
         new_static = not self._static_end - JUMP < t_static <= self._static_end
         total.add(t, p_total, new_total)
         static.add(t, p_static, new_static)
-        warmth.add(t, temperature, temperature == temperature or new_static)
+        warmth.add(t, temperature, temperature == temperature or new_static, counts=new_static)
         self._total_end = t_total if new_total else self._total_end
         self._static_end = t_static if new_static else self._static_end
         difference = p_total - (ZERO if self._noise.differential else p_static)
