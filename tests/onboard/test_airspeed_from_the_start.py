@@ -49,6 +49,43 @@ def test_the_rail_says_what_is_wrong(channel, column, how, kind, size):
         assert check.broken(row[0]) == ({channel: kind} if spoilt else {})
 
 
+def _warm(flight, seed, sd, step):
+    """Readings with a thermometer of that noise and step, K, and what is believed of it."""
+    readings = fly(flight, seed)
+    air = readings.air.copy()
+    air[:, 3] += sd * np.random.default_rng(seed).standard_normal(len(air))
+    air[:, 3] = np.round(air[:, 3] / step) * step
+    noise = replace(NOISE, temperature_white_sd=float(np.hypot(sd, step / 12.0**0.5)), temperature_step=step)
+    return replace(readings, air=air), replace(noise, rail_elevation=float(np.radians(flight.elevation_deg)))
+
+
+@pytest.mark.parametrize(("sd", "named"), [(0.005, True), (0.0005, False)])
+@pytest.mark.parametrize("start", [0.5, LAUNCH + 6.0])
+def test_a_thermometer_that_holds_its_value_is_named_where_its_noise_would_show(sd, named, start):
+    """On the rail and in flight, within 1 s; a quiet one of coarse steps repeats itself, and nothing is said."""
+    readings, noise = _warm(FLIGHT, 9610, sd, 0.005)
+    assert not run(readings, noise=noise).news
+    readings = spoil(readings, 3, start, "stuck")
+    news = run(readings, noise=noise).news
+    assert [row[1:] for row in news] == ([("airspeed_fault", "thermometer", "stuck")] if named else [])
+    assert not named or news[0][0] < max(start, LAUNCH) + 1.0
+    check = RailCheck(noise, 4.0)
+    for row in readings.air[readings.air[:, 0] < LAUNCH - 0.1].tolist():
+        check.add(*row)
+    assert check.broken(row[0]) == ({"thermometer": "stuck"} if named and start < LAUNCH else {})
+
+
+def test_a_conversion_that_is_read_twice_is_no_repetition():
+    """A head at 100 Hz reads a part at 3 Hz more than 25 times each: its thermometer is alive."""
+    readings, noise = _warm(replace(FLIGHT, duration=0.5), 9611, 0.005, 0.005)
+    check = RailCheck(noise, 4.0)
+    rows = readings.air[readings.air[:, 0] < LAUNCH - 0.1]
+    for k, row in enumerate(rows.tolist()):
+        last = rows[k - k % 30]
+        check.add(row[0], row[1], float(last[2]), float(last[3]), row[4], float(last[5]))
+    assert check.broken(row[0]) == {}
+
+
 def test_quiet_and_coarse_parts_are_alive():
     """Noise of a fifth of a step, and of 0.3 of what is usual: ready."""
     for sd, step in ((2.0, 10.0), (0.3, 0.01), (1.1, 2.64)):
