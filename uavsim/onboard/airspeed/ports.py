@@ -148,7 +148,7 @@ class Ports:
             self.seen_static = None
             if lift == lift:
                 self._lift = lift
-            kind = self.static.take(at, reading, lift, self._air.density, self.raw_static)
+            kind = self.static.take(at, reading, lift, (self._air.density, energy.v), self.raw_static)
             if kind or self.misses >= PERSISTENT:
                 self._flag_static(t, energy, kind or "jump")
         if self.seen_total is not None:

@@ -415,7 +415,7 @@ class StaticWatch:
         """Whether it may stand still. In still air it is too early then to blame the total port."""
         return self._test.evidence > DOUBTFUL
 
-    def take(self, t: float, reading: float, lift: float, density: float, raw: float) -> str:
+    def take(self, t: float, reading: float, lift: float, air: tuple[float, float], raw: float) -> str:
         """Take a reading; return what is wrong with the port, "frozen" or "stuck"; "" for nothing.
 
         Parameters
@@ -426,8 +426,8 @@ class StaticWatch:
             Pa.
         lift : float
             Mean of −f_z since the last one, m/s²; NaN where it is not known, and the port is not tested.
-        density : float
-            Of the air, kg/m³.
+        air : tuple of float
+            Its density, kg/m³, and the airspeed, m/s.
         raw : float
             The reading as it came, Pa.
         """
@@ -439,7 +439,7 @@ class StaticWatch:
         if dt > GAP:
             self._test, dt = ClimbTest(self._variance, reading, self._offset_sd, self._gusts), 0.0
         self._t = t
-        evidence = self._test.add(reading, dt, lift, density * GRAVITY)
+        evidence = self._test.add(reading, dt, lift, air[0] * GRAVITY, air[1])
         return "frozen" if evidence > SHUT else ""
 
     def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
