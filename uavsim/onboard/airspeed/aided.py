@@ -788,7 +788,9 @@ class AidedFilter(Estimator):
         )
         ports = self.ports
         if nis_total <= GATE:
-            self._fresh = self._t
+            self._fresh, ports.gated = self._t, 0
+        else:
+            ports.gate(energy)
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, self._lift
         ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
@@ -946,7 +948,9 @@ class AidedFilter(Estimator):
         on_rail = self._wind.on
         nis = self._measure(tared, variance, pushed, base > 0.0)
         if energy.taken:
-            self._fresh = self._t
+            self._fresh, self.ports.gated = self._t, 0
+        else:
+            self.ports.gate(energy)
         below = (0.0 if base else energy.p) - tared > NO_SPEED * air.density * energy.v * energy.v + self._sudden
         if not (energy.taken or below) and self.time < self._steady_from:  # too early for a fault: the filter is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)

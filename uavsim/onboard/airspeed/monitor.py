@@ -34,9 +34,9 @@ CERTAIN = 3.0  # times the level, from which on it is blamed even if the reading
 # to 41 (6 m/s in 2.5 s, in flight). h leaves three times that. By hand; a port that is far off passes it within half a
 # second at 100 Hz
 DRIFT, LEVEL = 0.5, 120.0
-# readings over which the mean of ν², clipped as ν is, tells how narrow the filter is. By hand: ten seconds at 100 Hz, so
-# that a leak, which is seen in half a second, is hardly in it. Without it turbulence at 140 m/s, where ν² is 15 for
-# seconds, was a drift twice in 58 flights
+# readings over which the mean of ν², clipped as ν is, tells how narrow the filter is. By hand: ten seconds at 100 Hz,
+# so that a leak, which is seen in half a second, is hardly in it. Without it turbulence at 140 m/s, where ν² is 15
+# for seconds, was a drift twice in 58 flights
 USUAL = 1000
 CLIP = 3.0  # standard deviations at which ν is clipped, so that spikes, which are gated, count little. By hand
 # b² over its variance, five standard deviations: beyond it b is no acceleration. Chance is there once in two million
