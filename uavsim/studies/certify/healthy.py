@@ -149,7 +149,12 @@ def judge(rows: Sequence[Row], seed: int, before: dict[str, Any] | None = None) 
     checks += _coverage(levels)
     checks.append(_cells(flown))
     checks += _fat(levels, before)
-    tables = {"levels": levels, "false flags": flag_rows(flown), "phases": phase_rows(flown)}
+    tables = {
+        "levels": levels,
+        "false flags": flag_rows(flown),
+        "phases": phase_rows(flown),
+        "readiness": readiness_rows(flown),
+    }
     return Verdict(tuple(checks), tables, worst(rows, seed))
 
 
@@ -216,23 +221,39 @@ def phase_rows(flown: Sequence[Row]) -> list[dict[str, Any]]:
 def flag_rows(flown: Sequence[Row]) -> list[dict[str, Any]]:
     """Return false flags of all flights and of each part: how many, and 95 % bounds per flight and per hour."""
     found = []
-    pools = [("all", "", list(flown))]
-    for factor, levels in FACTORS.items():
-        pools += [(factor, level, [row for row in flown if row[factor] == level]) for level in levels]
-    for factor, level, some in pools:
-        if not some:
-            continue
+    for name, some in _pools(flown):
         flagged, events = sum(row["flags"] > 0 for row in some), int(_sum(some, "flags"))
         hours = _sum(some, "hours")
         found.append(
             {
-                "of": f"{factor} {level}".strip(),
+                "of": name,
                 "flights": len(some),
                 "flagged": flagged,
                 "at most, of flights": share_interval(flagged, len(some))[1],
                 "hours": hours,
                 "at most, per hour": rate_interval(events, hours)[1] if hours > 0.0 else None,
             }
+        )
+    return found
+
+
+def _pools(flown: Sequence[Row]) -> list[tuple[str, Sequence[Row]]]:
+    """Return all flights and those of each level that has flown, by name."""
+    pools: list[tuple[str, Sequence[Row]]] = [("all", flown)]
+    for factor, levels in FACTORS.items():
+        pools += [(f"{factor} {level}", [row for row in flown if row[factor] == level]) for level in levels]
+    return [(name, some) for name, some in pools if some]
+
+
+def readiness_rows(flown: Sequence[Row]) -> list[dict[str, Any]]:
+    """Return how often a sound aircraft was not ready, of all flights and of each level, with 95 % bounds."""
+    found = []
+    for name, some in _pools(flown):
+        told = [row for row in some if row.get("ready") is not None]
+        wrong = sum(not row["ready"] for row in told)
+        low, high = share_interval(wrong, len(told)) if told else (None, None)
+        found.append(
+            {"of": name, "flights": len(some), "told": len(told), "not ready": wrong, "low": low, "high": high}
         )
     return found
 
