@@ -179,14 +179,18 @@ def run(block: Block) -> dict[str, Any]:
     }
 
 
-SMALL = ((r"--seeds (\d+)-\d+", r"--seeds \1-2"), (r"--flights \d+", "--flights 1"), (r"--hours \d+", "--hours 1"),
-         (r"--trials \d+", "--trials 50"), (r"--cells \d+", "--cells 20"))  # fmt: skip
+SMALL = {
+    r"--seeds (\d+)-\d+": r"--seeds \1-2",
+    r"--(flights|runs|hours) \d+": r"--\1 1",
+    r"--trials \d+": "--trials 50",
+    r"--cells [1-9]\d*": "--cells 20",
+}
 """What is made smaller, by patterns, to see whether a block works."""
 
 
 def small(command: str) -> str:
     """Return a command with a flight or two."""
-    for pattern, smaller in SMALL:
+    for pattern, smaller in SMALL.items():
         command = re.sub(pattern, smaller, command)
     return command
 
