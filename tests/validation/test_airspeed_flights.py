@@ -10,11 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from scipy.stats import chi2
 
 import uavsim
-from uavsim.studies.airspeed_flights import Held, PhaseFigures, figures, hold, paper_rmse
+from uavsim.studies.airspeed_flights import Held, figures, hold, paper_rmse
 
 pytestmark = pytest.mark.slow
 
@@ -74,7 +73,7 @@ def gusty(pair: list[str], whole: bool) -> list[Held]:
 
 
 def near_the_bound(flights: list[Held], figure: Figure, name: str) -> None:
-    """From climb on at most 1.25; with the air that is believed not less than as many constant errors scatter, 99.5 %."""
+    """From climb on at most 1.25; in the air that is believed not less than what so many errors scatter by, 99.5 %."""
     found = figures(flights)
     for phase in ("stroke", "unfolding", "climb", "cruise"):
         f = found[phase]

@@ -59,6 +59,7 @@ FACTORS: dict[str, tuple[Any, ...]] = {
 }
 SIZE = 4410
 BOUNDED = 5  # of so many flights one has its Cramér-Rao bound computed
+FEW = 210  # flights of a part up to which each has it: of fewer a fifth would say nothing of a level
 
 LOW, HIGH = 0.90, 0.99  # of the coverage
 LEAST_VALID = 0.99
@@ -105,8 +106,8 @@ def subset(count: int, seed: int) -> list[int]:
     return sorted(int(number) for number in numbers)
 
 
-def task(number: int, seed: int) -> Task:
-    """Return the flight of a combination."""
+def task(number: int, seed: int, bounded: bool = False) -> Task:
+    """Return the flight of a combination; every fifth has its bound computed, or it is asked for."""
     levels = combination(number)
     overrides = (
         f"accelerometer.preset={levels['accelerometer']}",
@@ -120,12 +121,13 @@ def task(number: int, seed: int) -> Task:
         f"air_data.tare={levels['tare']}",
         f"environment.temperature_offset={TEMPERATURES[levels['temperature']]:g}",
     )
-    return Task(number, "catapult", overrides, seed, levels, bounded=number % BOUNDED == 0)
+    return Task(number, "catapult", overrides, seed, levels, bounded=bounded or number % BOUNDED == 0)
 
 
 def tasks(seed: int, count: int | None = None) -> list[Task]:
     """Return the set, or a part of it."""
-    return [task(number, seed) for number in subset(SIZE if count is None else count, seed)]
+    size = SIZE if count is None else count
+    return [task(number, seed, bounded=size <= FEW) for number in subset(size, seed)]
 
 
 # -- what came ---------------------------------------------------------------------------------------------------------
