@@ -9,7 +9,8 @@ flights, never over estimates. The model is the filter's own, `onboard.airspeed.
 total and static pressure, temperature and the tare on the rail. There is no attitude. The turbulence is that which is
 declared, with its floor.
 
-**Constants of a flight.** Three more states do not change, and what the readings say of them is all that is known:
+**Constants of a flight.** Three more states do not change; what a description says of them, and the readings, is all
+that is known:
 
     m    share of V by which the pressures' airspeed is off:  p_t = p [(1 + V²(1 + m)²/(7 R T))^(7/2) − r] + …
          σ_m² = (½ σ_T/T)² + (½ σ_p/p)² + (½ σ_κ)²    thermometer; offset of both pressures; scale of a differential one
@@ -23,8 +24,10 @@ pair's mean difference at rest is d + P(u₀, w), P being what the wind makes of
 known, and this tells of the wind. After an open one, or none, it tells d, as well as the wind is known, ½ ρ w² and its
 error; the push then tells u₀, not w.
 
-What the filter takes for noise is noise here: that of the static port by angles which no vane tells, and how the wind
-grows in a climb. Left out, so that the bound is rather too low, is the recovery factor of the thermometer.
+**Angles** that no vane tells put the static port off by e q_c. e has the standard deviation that the filter believes
+(`flow_angles`), and wanders within the time in which an aircraft swings into the wind, ė = −e/τ + noise. How the wind
+grows in a climb is noise of V, as for the filter. Left out, so that the bound is rather too low, is the recovery factor
+of the thermometer.
 
 **Whose bound.** It is one of the mean over flights that are drawn as is believed. Of what is believed but not drawn, as
 the error of a declared wind where the scenario's is declared exactly, flights may be better than the bound.
@@ -56,7 +59,7 @@ from uavsim.onboard.airspeed.energy_model import (
     total_slopes,
     transition,
 )
-from uavsim.onboard.airspeed.flow_angles import FlowAngles
+from uavsim.onboard.airspeed.flow_angles import SWING, FlowAngles
 from uavsim.onboard.airspeed.gust import gust_density, shear_density
 from uavsim.onboard.airspeed.hand_over import AROUND
 from uavsim.onboard.airspeed.offset import with_offset
@@ -64,8 +67,8 @@ from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 
-SHARE, POSITION, ACROSS = 6, 7, 8  # m, c and w, beside the six states of `energy_model`
-SIZE = 9
+SHARE, POSITION, ACROSS, ANGLE = 6, 7, 8, 9  # m, c, w and e, beside the six states of `energy_model`
+SIZE = 10
 PARAMETER_WALK = 1e-3  # of a constant's standard deviation, 1/√s: Q must be regular
 LEAST = 1e-6  # of the deviation of k and the walk of d, in their units, for the same reason
 LEAST_WIND = 1e-3  # m/s, of w
@@ -253,7 +256,8 @@ class AirspeedBound:
             acceleration_sd=max(noise.acceleration_sd, LEAST),
         )
         self._initial = filled(initial, np.zeros((SIZE, SIZE)))
-        self._initial[SHARE, SHARE] = self._initial[POSITION, POSITION] = 1.0  # in their standard deviations
+        for state in (SHARE, POSITION, ANGLE):  # in their standard deviations
+            self._initial[state, state] = 1.0
         self._initial[ACROSS, ACROSS] = max(speed_sd if start.seen_sd is not None else 0.0, LEAST_WIND) ** 2
         self._railed = start.seen_sd is not None  # V stands for u, until the push has ended
         self._pushing = False
@@ -309,6 +313,7 @@ class AirspeedBound:
             transition(slope, speed, density=density, dt=dt, keep=keep, stay=stay),
             np.tile(np.eye(SIZE), (len(speed), 1, 1)),
         )
+        f[:, ANGLE, ANGLE] = 1.0 - dt / SWING
         share = RAIL_SHARE if railed else 1.0
         height = (float(c.static[:, 0].mean()) - float(static.mean())) / (STANDARD_GRAVITY * float(density.mean()))
         density_of_gusts = gust_density(aided, height) + shear_density(aided, height, float(np.mean(slope)))
@@ -328,6 +333,7 @@ class AirspeedBound:
         )
         entries[K, K] = (PARAMETER_WALK * max(noise.acceleration_sd, LEAST)) ** 2 * dt
         entries[SHARE, SHARE] = entries[POSITION, POSITION] = PARAMETER_WALK**2 * dt
+        entries[ANGLE, ANGLE] = 2.0 * dt / SWING
         # gusts are across the rail, too
         entries[ACROSS, ACROSS] = gust if self._railed else (PARAMETER_WALK * LEAST_WIND) ** 2 * dt
         return f, filled(entries, np.zeros((SIZE, SIZE)))
@@ -395,13 +401,17 @@ class AirspeedBound:
         c = self._courses
         speed, static = c.at(c.airspeed, self.time), c.at(c.static, self.time)
         ahead = static / self._gas * speed * (self.time - at)
+        slopes = {**static_slopes(ahead), **self._port(speed, static)}
+        self._take(slopes, self._noise.static_sd)
+
+    def _port(self, speed: Array, static: Array) -> dict[int, Array]:
+        """Derivatives of what the static port reads, by c and e, in their standard deviations."""
         impact = self._impact(speed, static)
-        unseen = float(np.mean(impact)) * self._unseen(self.time, float(np.mean(speed)), float(np.mean(static)))
-        slopes = {**static_slopes(ahead), POSITION: impact * self._position_sd}
-        self._take(slopes, float(np.hypot(self._noise.static_sd, unseen)))
+        unseen = self._unseen(self.time, float(np.mean(speed)), float(np.mean(static)))
+        return {POSITION: impact * self._position_sd, ANGLE: impact * unseen}
 
     def _unseen(self, t: float, speed: float, static: float) -> float:
-        """What the static port may be off by, a share of q_c, as no vane tells the angles: noise, as in the filter."""
+        """Return what angles put the static port off by, a share of q_c: one standard deviation."""
         if self._railed:
             return 0.0
         angles, density = self._angles, static / self._gas
@@ -421,7 +431,8 @@ class AirspeedBound:
         relative = 1.0 if noise.differential else 0.0
         slopes = total_slopes(speed, static, pushed=push, heat=self._heat, relative=relative)
         slopes[SHARE] = slopes[V] * speed * self._share_sd
-        slopes[POSITION] = -relative * self._impact(speed, static) * self._position_sd
+        if relative:
+            slopes |= {state: -slope for state, slope in self._port(speed, static).items()}
         if self._railed:
             slopes[V], slopes[ACROSS], _ = self._rail_slopes(self.time, relative)
         self._take(slopes, noise.total_sd)
