@@ -141,15 +141,10 @@ def spread(slopes: dict[str, str], *more: str) -> str:
     return " + ".join([*(times(slope, f"g{j}") for j, slope in slopes.items()), *more])
 
 
-def correct(states: str, name: Namer, held: str = "", learns: str = "") -> list[str]:
-    """Write x ← x + K ν and P ← P − K g, with K = g over the innovation's variance.
-
-    Of a state that is held K is 0 (Schmidt 1966): it stays, with its variance, and the others know that. `learns` is
-    the condition under which d is corrected.
-    """
-    moved = [i for i in states if i not in held]
+def correct(states: str, name: Namer) -> list[str]:
+    """Write x ← x + K ν and P ← P − K g, with K = g over the innovation's variance."""
     return [
-        *(f"k{i} = g{i} / spread" + (f" if {learns} else 0.0" if learns and i == "d" else "") for i in moved),
-        *(f"{name(i)} += k{i} * innovation" for i in moved),
-        *(f"{name(i + j)} -= k{i} * g{j}" for i, j in pairs(states) if i not in held),
+        *(f"k{i} = g{i} / spread" for i in states),
+        *(f"{name(i)} += k{i} * innovation" for i in states),
+        *(f"{name(i + j)} -= k{i} * g{j}" for i, j in pairs(states)),
     ]

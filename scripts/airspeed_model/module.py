@@ -246,8 +246,8 @@ def updates() -> dict[str, str]:
         "total_g": block(towards(known, STEADY, local), 3),
         "total_off": taken_off(known),
         "total_spread": spread(known, "total_variance", bend),
-        "correct_3": block(correct(STEADY, local, held="d"), 3),
-        "correct_4": block(correct(STEADY, local, held="d"), 4),
+        "correct_3": block(correct(STEADY, local), 3),
+        "correct_4": block(correct(STEADY, local), 4),
         "bent": block(bent(), 2),
         "own_static_g": block(towards(static, ALL, own), 2),
         "own_static_off": taken_off(static, own),
@@ -262,7 +262,7 @@ def updates() -> dict[str, str]:
         "at_off": f" - {times(total['p'], at['p'])}"
         + "".join(f" - {total[i]} * ({i} - {at[i]})" for i in at)
         + taken_off({i: slope for i, slope in total.items() if i not in at}),
-        "correct_own": block(correct(ALL, own, learns="self.learns"), 2),
+        "correct_own": block(correct(ALL, own), 2),
     }
 
 

@@ -80,7 +80,7 @@ class EnergyFilter(EnergyModel):
         self._difference_density = difference_walk**2
         self._relative = 1.0 if relative else 0.0
         self.b = self.d = self.k = self.innovation = 0.0
-        self.taken = self.learns = True
+        self.taken = True
         self.v, self.s, self.p = speed, rest_force, static
         self.vb = self.vp = self.vs = self.vd = self.vk = self.bp = self.bd = self.bk = 0.0
         self.ps = self.pd = self.pk = self.sd = self.sk = self.dk = 0.0

@@ -189,14 +189,12 @@ class EnergyModel:
         The last one, Pa.
     taken : bool
         Whether the last reading was within the gate of five standard deviations.
-    learns : bool
-        Whether readings correct d. Not in steady flight, from the first `fly` on.
     """
 
     __slots__ = (
         "_bias_density", "_bias_time", "_difference_density", "_relative", "_slope_density", "_slope_time",
-        "_static_density", "b", "bb", "bd", "bk", "bp", "bs", "d", "dd", "dk", "innovation", "k", "kk", "learns", "p",
-        "pd", "pk", "pp", "ps", "s", "sd", "sk", "ss", "taken", "v", "vb", "vd", "vk", "vp", "vs", "vv",
+        "_static_density", "b", "bb", "bd", "bk", "bp", "bs", "d", "dd", "dk", "innovation", "k", "kk", "p", "pd", "pk",
+        "pp", "ps", "s", "sd", "sk", "ss", "taken", "v", "vb", "vd", "vk", "vp", "vs", "vv",
     )  # fmt: skip
 
     _bias_density: float  # what b, s, p and d gain in variance a second
@@ -235,7 +233,6 @@ class EnergyModel:
     kk: float
     innovation: float
     taken: bool
-    learns: bool
 
     def predict(self, dt: float, gained: float, variance: float, density: float, railed: bool) -> None:
         """Advance.
@@ -459,7 +456,7 @@ class EnergyModel:
         kb = gb / spread
         kp = gp / spread
         ks = gs / spread
-        kd = gd / spread if self.learns else 0.0
+        kd = gd / spread
         kk = gk / spread
         self.v += kv * innovation
         self.b += kb * innovation
@@ -509,10 +506,6 @@ class EnergyModel:
         once: three calls spend as much on that as on sums. Where the total pressure bends over what is not known of v,
         near rest, `total` takes it.
 
-        d is held from here on, for in flight it cannot be told from v. The slope ρ v of a total pressure is that of an
-        estimate, which noise moves, so that a filter that corrects d finds what is not there: d walks away, 20 Pa in
-        half a minute after a tare in the wind, and its variance stays what it was.
-
         Parameters
         ----------
         dt, gained, variance, density
@@ -527,7 +520,6 @@ class EnergyModel:
         tuple of float
             Normalised innovations squared of static and total pressure.
         """
-        self.learns = False
         v, b, p = self.v, self.b, self.p
         s, d = self.s, self.d
         vv, vb, vp = self.vv, self.vb, self.vp
@@ -585,10 +577,12 @@ class EnergyModel:
             kb = gb / spread
             kp = gp / spread
             ks = gs / spread
+            kd = gd / spread
             v += kv * innovation
             b += kb * innovation
             p += kp * innovation
             s += ks * innovation
+            d += kd * innovation
             vv -= kv * gv
             vb -= kv * gb
             vp -= kv * gp
@@ -603,6 +597,7 @@ class EnergyModel:
             pd -= kp * gd
             ss -= ks * gs
             sd -= ks * gd
+            dd -= kd * gd
 
         # The total pressure
         y = 1.0 + v * v / heat
@@ -628,10 +623,12 @@ class EnergyModel:
                 kb = gb / spread
                 kp = gp / spread
                 ks = gs / spread
+                kd = gd / spread
                 v += kv * innovation
                 b += kb * innovation
                 p += kp * innovation
                 s += ks * innovation
+                d += kd * innovation
                 vv -= kv * gv
                 vb -= kv * gb
                 vp -= kv * gp
@@ -646,6 +643,7 @@ class EnergyModel:
                 pd -= kp * gd
                 ss -= ks * gs
                 sd -= ks * gd
+                dd -= kd * gd
 
         self.v, self.b, self.p = v, b, p
         self.s, self.d = s, d
