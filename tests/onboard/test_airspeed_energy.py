@@ -161,6 +161,7 @@ def test_a_difference_that_is_not_known_stays_in_steady_flight(each, static_each
     f.v, f.vv, f.s, f.ss, f.bs = 32.0, 25.0 / (DENSITY * 32.0) ** 2 + 0.01, 0.0, 0.1, 0.0
     f.vd = -25.0 / (DENSITY * 32.0)
     f.know_push()
+    f.hold_difference()
     total = 101_325.0 * (1.0 + 32.0**2 / HEAT) ** 3.5
     for _ in range(2400):
         f.fly(

@@ -47,7 +47,6 @@ class MatrixFilter(EnergyFilter):
         self, dt, gained, variance, density, static, static_variance, ahead, total, total_variance, heat
     ) -> tuple[float, float]:
         """Advance and take both pressures; see `EnergyModel.fly`."""
-        self.learns = False
         self.predict(dt, gained, variance, density, False)
         nis = self.static(static, static_variance, ahead)
         return nis, self.total(total, total_variance, 0.0, heat)
