@@ -355,7 +355,7 @@ class AidedFilter(Estimator):
         energy, variance = self.energy, self._settings.wind_sd**2
         if "total" in broken or "static" in broken:  # then nothing has been seen of the wind
             self._onset.know()
-            self._progress.wind.forget()
+            self._progress.lose_wind()
             energy.restart(0.0, variance)
         for channel, kind in broken.items():
             if channel == "thermometer":

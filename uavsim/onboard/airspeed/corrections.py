@@ -131,6 +131,8 @@ class Corrections:
         energy, air, dt = progress.energy, progress.air, to - progress.time
         density = air.density
         progress.feel_shock(to)
+        if energy.learns:
+            energy.hold_difference()
         if energy.kk > 0.0:
             self._push_variance = energy.know_push()
         gained, variance = progress.go(to, dt)

@@ -128,9 +128,8 @@ class HandOver:
             tare_variance = self._noise.difference_sd**2  # nobody has tared the pair
         rest = progress.rest.result(start)
         at, density = (static, static / progress.air.gas) if known else (airdata.STANDARD_PRESSURE, 0.0)
-        tied = 0.0
         if self._wind_known:
-            along, along_sd, off, tare_variance, tied = self._look_at_wind(start, at, density, (tare, tare_variance))
+            along, along_sd, off, tare_variance = self._look_at_wind(start, at, (tare, tare_variance))
         else:
             progress.wind.forget()
             off, along_sd = tare, self._onset.look(self._at_rest(start), (tare, tare_variance), density)
@@ -141,7 +140,6 @@ class HandOver:
             static=(at, AROUND if known else ANYWHERE),
             difference_sd=sqrt(tare_variance),
         )
-        energy.tie_difference(tied)
         return Beginning(energy, off, (along, along_sd), rest[1])
 
     def _at_rest(self, end: float, longest: float = inf) -> tuple[float, float] | None:
@@ -150,9 +148,9 @@ class HandOver:
         return rest_difference(self.rows, start=begun, end=end, each=self._pair_variance)
 
     def _look_at_wind(
-        self, start: float, static: float, density: float, tare: tuple[float, float]
-    ) -> tuple[float, float, float, float, float]:
-        """Return u₀, its standard deviation, the tare, the variance of d and their covariance; see `rail_wind`."""
+        self, start: float, static: float, tare: tuple[float, float]
+    ) -> tuple[float, float, float, float]:
+        """Return u₀, its standard deviation, the tare, and the variance of d; see `rail_wind`."""
         progress, noise = self._progress, self._noise
         air, wind = progress.air, progress.wind
         self._onset.know()
@@ -166,10 +164,10 @@ class HandOver:
             seen = self._waiting.tare()
             seen = seen if seen[1] > 0.0 else None
         gusts = air.gust * max(wind.speed_declared, SLOWEST) * AGO
-        along, sd, off, variance, tied = wind.begin(seen, tared=tared, air=(static, air.heat, gusts), density=density)
+        along, sd, off, variance = wind.begin(seen, tared=tared, air=(static, air.heat, gusts))
         if tared or seen is None:
-            return along, sd, *tare, tied
-        return along, sd, off, variance + noise.walk**2 * AGO, tied
+            return along, sd, *tare
+        return along, sd, off, variance + noise.walk**2 * AGO
 
     # -- in flight ---------------------------------------------------------------------------------------------------
 

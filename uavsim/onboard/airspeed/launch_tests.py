@@ -129,7 +129,7 @@ class LaunchTests:
     def _not_risen(self, kind: str) -> None:
         """Flag the total port in the stroke. What it has told of the wind is void, and V is what the force gave."""
         progress = self._progress
-        progress.wind.forget()
+        progress.lose_wind()
         begun, _, w = self._base
         since, gained = progress.time - begun, self.speed_gained()
         rest = self._rest_sd * since
