@@ -9,7 +9,8 @@ from uavsim import airdata
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel, build
 from uavsim.onboard.airspeed.difference import ZERO, Difference
 from uavsim.onboard.airspeed.energy_model import isentropic, total_pressure, total_slopes
-from uavsim.onboard.airspeed.rail import RailCheck, limits
+from uavsim.onboard.airspeed.measured import limits
+from uavsim.onboard.airspeed.rail import RailCheck
 from uavsim.onboard.airspeed.stroke import StrokeTest
 from uavsim.onboard.flow_through import MOVED, FlowThrough, FlowThroughSettings
 
