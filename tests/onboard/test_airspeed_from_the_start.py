@@ -34,6 +34,24 @@ def test_a_dead_sensor_is_named_at_the_launch_and_never_taken_back(channel, colu
     assert not flown.after(0.0)[:, 3].any() or channel == "thermometer"
 
 
+@pytest.mark.parametrize(("channel", "column"), [("total", 1), ("static", 2)])
+@pytest.mark.parametrize("step", [0.0, 4.0])
+def test_a_pressure_at_the_end_of_its_range_is_none_in_flight_either(channel, column, step):
+    """With or without steps: it has been clipped. On the rail the same rule holds (`measured`)."""
+    end = 103_000.0
+    noise = replace(NOISE, **{f"{channel}_range": (30_000.0, end), f"{channel}_step": step})
+    clipped = end - 0.4 * step
+    readings = spoil(fly(FLIGHT, 9604), column, LAUNCH + 4.0, "value", size=clipped)
+    flown = run(readings, noise=noise)
+    assert (channel, "range") in {(name, word) for _, _, name, word in flown.faults}
+    check = RailCheck(noise, -1.0)
+    for k in range(200):
+        row = [0.01 * k, 95_000.0 + k % 7, 95_000.0 + k % 5, 288.0, 0.01 * k, 0.01 * k]
+        row[column] = clipped
+        check.add(*row)
+    assert check.broken(2.0) == {channel: "range"}
+
+
 @pytest.mark.parametrize(("channel", "column", "how", "kind", "size"), DEAD)
 def test_the_rail_says_what_is_wrong(channel, column, how, kind, size):
     """With a reason that names it; a healthy head has none."""

@@ -8,13 +8,12 @@ themselves, when they agree (`readmission`).
 
 from math import inf, nan, sqrt
 
-from uavsim.onboard.airspeed.difference import channel_range
-from uavsim.onboard.airspeed.interface import NoiseModel, reading_variances, within
+from uavsim.onboard.airspeed.interface import NoiseModel, reading_variances
+from uavsim.onboard.airspeed.measured import limits
 from uavsim.onboard.airspeed.ports import Ports
 from uavsim.onboard.airspeed.progress import Progress
 from uavsim.onboard.airspeed.rail import pause
 from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
-from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import Row
 from uavsim.onboard.stamps import Conversions
 
@@ -68,10 +67,8 @@ class Admission:
 
     def __init__(self, noise: NoiseModel, longest: float, progress: Progress, ports: Ports, warmth: Row) -> None:
         self._progress, self._ports, self._warmth = progress, ports, warmth
-        self._coldest, self._warmest = within(noise.temperature_range, 0.0, LEAST_TEMPERATURE, MOST_TEMPERATURE)
+        self._total_within, self._static_within, (self._coldest, self._warmest) = limits(noise)
         self._warmed = 0.2 * noise.thermometer_recovery
-        self._total_within = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
-        self._static_within = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self.sudden = max(SUDDEN, SUDDEN_SD * sqrt(max(reading_variances(noise))))
         self.total, self.static = Spikes(), Spikes()
         self._total_ends, self._static_ends = Conversions(longest), Conversions(longest)
@@ -125,10 +122,10 @@ class Admission:
             temperature = nan
         air.at(energy.p, energy.s)
         low, high = self._total_within
-        if not low <= channel <= high:
+        if not low < channel < high:
             channel = nan
         low, high = self._static_within
-        if not low <= p_static <= high:
+        if not low < p_static < high:
             p_static = nan
         reach = self.sudden + (STEEP if steady else STROKE) * (t - before)
         total, static = self.total.take(channel, reach), self.static.take(p_static, reach)

@@ -214,7 +214,8 @@ class AidedFilter(Estimator):
         estimate = self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
         if estimate is None:
             return None
-        self._hand_over.rows.append((t, p_total, p_static, temperature, t_total, t_static))
+        if self._gated == inf:  # before a launch; in flight they would be kept for none
+            self._hand_over.rows.append((t, p_total, p_static, temperature, t_total, t_static))
         if estimate[6] and (t < self._gated < inf or self._of_rail(estimate[1]) or self._rail.broken(t)):
             return (*estimate[:6], False, *estimate[7:])
         return estimate

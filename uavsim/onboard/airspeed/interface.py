@@ -149,21 +149,6 @@ class NoiseModel:
     difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
 
 
-def within(ends: tuple[float, float], step: float, least: float, most: float) -> tuple[float, float]:
-    """Return between which readings something has been measured: within the part's ends, and plausible.
-
-    Parameters
-    ----------
-    ends : tuple of float
-        Of the part's range; a reading there, or less than half a step away, has been clipped.
-    step : float
-        By which readings are rounded.
-    least, most : float
-        What is plausible at all (`uavsim.onboard.plausible`).
-    """
-    return max(least, ends[0] + 0.5 * step), min(most, ends[1] - 0.5 * step)
-
-
 def reading_variances(noise: NoiseModel) -> tuple[float, float]:
     """Return those of a reading of the total channel and of the static pressure, Pa², as the aided filter has them."""
     return max(noise.total_sd, MODEL) ** 2, max(noise.static_sd, MODEL) ** 2

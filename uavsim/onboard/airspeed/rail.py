@@ -11,10 +11,10 @@ live one does not move either. That is for the stroke (`stroke`).
 
 from math import hypot, inf, sqrt
 
-from uavsim.onboard.airspeed.difference import ZERO, channel_range
+from uavsim.onboard.airspeed.difference import ZERO
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.measured import limits
 from uavsim.onboard.life import WORDS, SensorLife
-from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
 from uavsim.onboard.repeats import alike, longest_row, warmth_row
 from uavsim.onboard.stamps import JUMP
 
@@ -26,16 +26,6 @@ SETTLED = 1.0  # s of readings before anything is said. By hand
 FAR = 4.0  # standard deviations: one healthy pair in 16 000
 STORM = 800.0  # Pa: ½ρw² of 36 m/s, which an open head may see at rest
 LEAST_OFFSET = 30.0  # Pa, below which no difference is told: 7 m/s at rest, which the tare takes off. By hand
-
-
-def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
-    """Return between which values a total channel, a static pressure, Pa, and a temperature, K, is a measurement."""
-    (a, b), (c, d), (e, f) = channel_range(noise), noise.static_range, noise.temperature_range
-    return (
-        (max(a, LEAST_PRESSURE), min(b, MOST_PRESSURE)),
-        (max(c, LEAST_PRESSURE), min(d, MOST_PRESSURE)),
-        (max(e, LEAST_TEMPERATURE), min(f, MOST_TEMPERATURE)),
-    )
 
 
 def rows_allowed(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float]]:
