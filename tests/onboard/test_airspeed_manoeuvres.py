@@ -99,3 +99,14 @@ def test_the_watch_begins_when_the_push_has_ended():
         flight = replace(MANOEUVRES[name], duration=11.0)
         begins = run(fly(flight, 9500), believed(flight)).filter._progress.steady_from - LAUNCH
         assert least < begins < most
+
+
+@pytest.mark.parametrize("rate", [0.1, -0.1, 0.3])
+def test_an_accelerometer_that_drifts_in_still_air_is_in_the_error_bar(rate):
+    """A total pressure that stands still may be that of a shut port; the bar holds both, and no valid one is wrong."""
+    readings = fly(Flight(duration=18.0), 9420)
+    force = readings.force.copy()
+    force[:, 1] += rate * np.clip(force[:, 0] - LAUNCH - 7.0, 0.0, None)
+    rows = run(replace(readings, force=force)).after(7.0)
+    assert np.mean(np.abs(rows[:, 4]) < 1.96 * rows[:, 2]) > 0.95
+    assert np.abs(rows[rows[:, 3] > 0.0, 4]).max() < 3.0

@@ -87,6 +87,10 @@ GUSTLESS = ("frozen", "drift", "leak")
 # drifts explains a total pressure that stands still in still air as well. By hand
 SLOWLY = 1.0
 
+# Pa/s, of the total pressure before that: where it had moved no faster, only the force has changed, and nothing but an
+# accelerometer that drifts may have been the reason. A climb of 2 m/s makes 24. By hand
+MOVES = 15.0
+
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
 
 # above it the port is flagged. By hand; docs/faults.md: in a climb 100 of 100 within 0.54 s, in 500 healthy flights
@@ -309,7 +313,8 @@ class TotalWatch:
             return
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
-        self.undecided = kind == "frozen" and not self._declared and t - trusted[0] > SLOWLY
+        slowly = t - trusted[0] > SLOWLY or self._was_still(trusted, density)
+        self.undecided = kind == "frozen" and not self._declared and slowly
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
             before = self._before[0]
             if kind == "leak":
@@ -337,6 +342,13 @@ class TotalWatch:
             vv += self._gust_variance
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
+
+    def _was_still(self, trusted: Kept, density: float) -> bool:
+        """Whether the total pressure hardly moved before an instant: that it stands still then is no news."""
+        before = self._before[0]
+        since = trusted[0] - before[0]
+        moved = trusted[4] - before[4] + density * trusted[2] * (trusted[2] - before[2])
+        return 0.0 < since < inf and -MOVES * since < moved < MOVES * since
 
     def _earlier(self, trusted: Kept) -> Kept:
         """What is kept of `EARLIER` before an instant: in still air the force tells V well enough from there on."""
