@@ -340,6 +340,7 @@ class AidedFilter(Estimator):
     def _begin_on_rail(self, start: float, t: float, broken: dict[str, str]) -> None:
         """Begin at rest on the rail at an instant, s; what the rail has shown to be dead is flagged at `t`, s."""
         hand_over, tests = self._hand_over, self._tests
+        start = hand_over.still_until(start, t)
         begun = hand_over.on_rail(start)
         self._start(start, begun, t + PATIENCE, inf)
         tests.begin(begun.rest_sd)

@@ -38,7 +38,6 @@ TURNS = 4  # Gauss-Newton's on the rail, where D bends with u₀
 CALM = 1.0  # m/s, standard deviation of a wind that nobody declares: Beaufort 1, which a crew calls calm
 VERTICAL = 0.5  # σ_w/σ_u of the turbulence at 10 ft, MIL-F-8785C
 GROWTH = 0.28  # dW/W over dh/h near the ground: 1/ln(h/z₀) of the logarithmic law at 1.6 m over short grass
-AGO = 0.25  # s, by which the readings on the rail are older than the filter's start: half of their stretch
 
 
 class RailWind:
@@ -132,7 +131,7 @@ class RailWind:
         tared : bool
             Whether a covered tare has been taken off, so that what is left is the wind's.
         air : tuple of float
-            Static pressure, Pa, 7 R T, m²/s², and by how much gusts widen the wind in `AGO`, m²/s².
+            Static pressure, Pa, 7 R T, m²/s², and by how much gusts have widened the wind since, m²/s².
 
         Returns
         -------
