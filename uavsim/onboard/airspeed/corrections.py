@@ -158,7 +158,9 @@ class Corrections:
         )
         ports = self._ports
         if nis_total <= GATE:
-            self.fresh = progress.t
+            self.fresh, ports.gated = progress.t, 0
+        else:
+            ports.gate(energy)
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, progress.lift
         ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
@@ -242,7 +244,9 @@ class Corrections:
         on_rail = progress.wind.on
         nis = self._measure(tared, variance, pushed, base > 0.0)
         if energy.taken:
-            self.fresh = progress.t
+            self.fresh, ports.gated = progress.t, 0
+        else:
+            ports.gate(energy)
         below = (0.0 if base else energy.p) - tared > NO_SPEED * air.density * energy.v * energy.v + self._sudden
         if not (energy.taken or below) and progress.time < progress.steady_from:  # too early for a fault: it is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)

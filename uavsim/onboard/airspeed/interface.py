@@ -63,6 +63,9 @@ class NoiseModel:
         By which they are rounded, Pa.
     temperature_range : tuple of float
         K: a temperature beyond it is no measurement.
+    temperature_white_sd, temperature_step, temperature_lag : float
+        Noise of one reading of the thermometer, rounding included, K; by which it is rounded, K; the time constant of
+        its digital filter, s.
     accelerometer_range : tuple of float
         m/s²: a specific force at or beyond an end has been clipped.
     accelerometer_step : float
@@ -122,6 +125,9 @@ class NoiseModel:
     total_step: Annotated[float, Ge(0.0)] = 0.0
     static_step: Annotated[float, Ge(0.0)] = 0.0
     temperature_range: tuple[float, float] = (LEAST_TEMPERATURE, MOST_TEMPERATURE)
+    temperature_white_sd: Annotated[float, Ge(0.0)] = 0.0
+    temperature_step: Annotated[float, Ge(0.0)] = 0.0
+    temperature_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     accelerometer_range: tuple[float, float] = ANY
     accelerometer_step: Annotated[float, Ge(0.0)] = 0.0
     accelerometer_white_sd: Annotated[float, Ge(0.0)] = 0.0
@@ -141,21 +147,6 @@ class NoiseModel:
     thermometer_recovery_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     differential: bool = False
     difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
-
-
-def within(ends: tuple[float, float], step: float, least: float, most: float) -> tuple[float, float]:
-    """Return between which readings something has been measured: within the part's ends, and plausible.
-
-    Parameters
-    ----------
-    ends : tuple of float
-        Of the part's range; a reading there, or less than half a step away, has been clipped.
-    step : float
-        By which readings are rounded.
-    least, most : float
-        What is plausible at all (`uavsim.onboard.plausible`).
-    """
-    return max(least, ends[0] + 0.5 * step), min(most, ends[1] - 0.5 * step)
 
 
 def reading_variances(noise: NoiseModel) -> tuple[float, float]:

@@ -30,7 +30,7 @@ from sensors import Streams
 from uavsim.flight import Flight
 from uavsim.studies.certify.figures import WRONG, Errors, Row, readiness
 from uavsim.studies.certify.healthy import GUSTY
-from uavsim.studies.certify.tasks import Task
+from uavsim.studies.certify.tasks import Task, numbers
 from uavsim.studies.certify.verdict import Check, Verdict
 from uavsim.studies.intervals import share_interval
 
@@ -202,8 +202,7 @@ def task(number: int, seed: int) -> Task:
 
 def tasks(seed: int, count: int | None = None) -> list[Task]:
     """Return the set, or as many flights of each case as a part of it holds."""
-    each = EACH if count is None else max(1, min(EACH, count // len(CASES)))
-    return [task(place * SECTION + flight, seed) for place in range(len(CASES)) for flight in range(each)]
+    return [task(number, seed) for number in numbers(len(CASES), EACH, SECTION, count)]
 
 
 def judge(rows: Sequence[Row], seed: int, before: dict[str, Any] | None = None) -> Verdict:
