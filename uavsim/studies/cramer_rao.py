@@ -225,8 +225,7 @@ class AirspeedBound:
 
     def _sd(self) -> Array:
         self.information = Information(np.asarray(np.linalg.inv(self._initial), dtype=np.float64))
-        total_age = 0.5 * self._noise.total_window + self._noise.total_lag
-        static_age = 0.5 * self._noise.static_window + self._noise.static_lag
+        total_age, static_age = self._noise.total_age, self._noise.static_age
         last_total = last_static = -np.inf
         found = []
         schedule = self._schedule
