@@ -280,8 +280,7 @@ class AirspeedBound:
         if self._start.seen_sd is not None:
             along, across, _ = self._rail_slopes(self._schedule.start, relative=1.0)
             self._take({V: along, ACROSS: across, D: 1.0}, self._start.seen_sd)
-        total_age = 0.5 * self._noise.total_window + self._noise.total_lag
-        static_age = 0.5 * self._noise.static_window + self._noise.static_lag
+        total_age, static_age = self._noise.total_age, self._noise.static_age
         last_total = last_static = -np.inf
         found = []
         schedule = self._schedule

@@ -148,7 +148,7 @@ class AidedFilter(Estimator):
         )
         self._hand_over = HandOver(
             self.core, noise, settings, self._tare_end,
-            waiting=self._waiting, progress=progress, onset=self._onset, total_age=corrections.total_age,
+            waiting=self._waiting, progress=progress, onset=self._onset,
         )  # fmt: skip
 
     @property
@@ -305,10 +305,10 @@ class AidedFilter(Estimator):
             self._begin_aloft(start, t)
         else:
             self._begin_on_rail(start, t, broken)
-        corrections = self._corrections
+        total_age, static_age = self._noise.total_age, self._noise.static_age
         try:
             for row in self._hand_over.rows:
-                if row[4] - corrections.total_age > start or row[5] - corrections.static_age > start:
+                if row[4] - total_age > start or row[5] - static_age > start:
                     self._fly(*row)
         except (ArithmeticError, ValueError):  # as in `step`
             self._fall_back(t, "diverged")

@@ -148,6 +148,16 @@ class NoiseModel:
     differential: bool = False
     difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
 
+    @property
+    def total_age(self) -> float:
+        """From the instant of which a reading of the total channel is to the end of its conversion, s."""
+        return 0.5 * self.total_window + self.total_lag
+
+    @property
+    def static_age(self) -> float:
+        """The same of the static pressure, s."""
+        return 0.5 * self.static_window + self.static_lag
+
 
 def reading_variances(noise: NoiseModel) -> tuple[float, float]:
     """Return those of a reading of the total channel and of the static pressure, Pa², as the aided filter has them."""
