@@ -18,6 +18,7 @@ import numpy as np
 from sensors import Streams
 from sensors.knowledge import known_of_head
 from uavsim.flight import Flight
+from uavsim.scenario import Scenario
 from uavsim.studies.certify.figures import Row
 from uavsim.studies.certify.healthy import ACCELEROMETERS, PRESSURES
 from uavsim.studies.certify.tasks import Task
@@ -173,7 +174,7 @@ def task(number: int, seed: int) -> Task:
 
 def beyond(flight: Flight) -> Row:
     """Say whether a pressure of the course is beyond its sensor's range: then a flag that says so is right."""
-    known, truth = known_of_head(flight.scenario.air_data), flight.truth
+    known, truth = known_of_head(Scenario.from_dict(flight.scenario).air_data), flight.truth
     return {
         "beyond": any(
             bool((truth[f"p_{port}"] > knowledge.high).any() or (truth[f"p_{port}"] < knowledge.low).any())
