@@ -96,7 +96,7 @@ def test_every_number_of_the_knowledge_is_believed(of: str, name: str, monkeypat
         "air_data.pipe=0.05", "air_data.acceleration_sensitivity=true", "air_data.static.normal=[1,0,1]",
         "air_data.static_port.error_alpha=0.1", "air_data.static_port.error_mach2=0.1",
         "air_data.static_port.slipstream=0.1", "air_data.total_port.slipstream=0.1",
-        "air_data.thermometer_recovery=0.4",
+        "air_data.thermometer_recovery=0.4", "air_data.static.iir=2",
     )  # fmt: skip
     plain, known = believed_noise(flown), getattr(beliefs, of)
 

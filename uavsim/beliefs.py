@@ -95,6 +95,9 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         total_sd=belief.total_noise * thin * total.noise_sd,
         static_sd=belief.static_noise * static.noise_sd,
         temperature_sd=belief.temperature * head.temperature_sd,
+        temperature_white_sd=head.temperature_white_sd,
+        temperature_step=head.temperature_step,
+        temperature_lag=belief.lag * head.temperature_lag,
         total_tuned_sd=thin * total.noise_sd,
         static_tuned_sd=static.noise_sd,
         total_window=belief.lag * total.window,
@@ -181,9 +184,9 @@ def _thin(scenario: Scenario, head: HeadKnowledge) -> float:
 
 
 def _elevation(scenario: Scenario) -> float | None:
-    """Elevation of the rail as the crew believes it, rad; of a rig nothing is believed that is not said."""
+    """Elevation of the rail as the crew believes it, rad; of a rig without one nothing is believed that is not said."""
     told = scenario.flight_computer.rail_elevation_deg
-    if told is None and scenario.plant.chosen.flies:
+    if told is None and scenario.plant.chosen.on_rail:
         told = scenario.launcher.elevation_deg
     return None if told is None else radians(told)
 
@@ -199,7 +202,7 @@ def believed_air(scenario: Scenario, calibration: Calibration = NO_CALIBRATION) 
     height = max(scenario.flight_computer.height, LOWEST * FOOT)
     sd, length = turbulence(scenario.environment, height, scenario.launcher.heading_deg)
     grown = growth(scenario.environment, sqrt(height * scenario.launcher.height))
-    if scenario.plant.chosen.flies:
+    if scenario.plant.chosen.on_rail:
         settings = replace(settings, aided=replace(settings.aided, launch_height=scenario.launcher.height))
     if grown > 0.0:
         angle = radians(scenario.launcher.heading_deg - scenario.environment.wind_from_deg)
@@ -217,7 +220,7 @@ def believed_air(scenario: Scenario, calibration: Calibration = NO_CALIBRATION) 
 def _rail_wind(scenario: Scenario, calibration: Calibration) -> dict[str, float]:
     """The wind past the aircraft on its rail as it is declared, unless the estimator's settings have one."""
     environment, launcher, share = scenario.environment, scenario.launcher, scenario.mismatch.wind
-    if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.flies:
+    if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.on_rail:
         return {}
     up = radians(launcher.elevation_deg)
     north, east = mean_wind(environment, launcher.height)

@@ -81,8 +81,6 @@ class HandOver:
         Where the filter will stand.
     onset : Onset
         Of the airspeed by pressures.
-    total_age : float
-        From a total pressure's instant to the end of its conversion, s.
 
     Attributes
     ----------
@@ -105,11 +103,10 @@ class HandOver:
         waiting: JumpAdaptive,
         progress: Progress,
         onset: Onset,
-        total_age: float,
     ) -> None:
         self._core, self._wind_sd, self._tare_end = core, settings.wind_sd, tare_end
         self.believe(noise, settings)
-        self._waiting, self._progress, self._onset, self._total_age = waiting, progress, onset, total_age
+        self._waiting, self._progress, self._onset, self._total_age = waiting, progress, onset, noise.total_age
         self._pair_variance, self._row_variance = pair_variance(noise), sum(reading_variances(noise))
         self._wind_known = progress.wind.declared or tare_end == -inf
         self.rows: deque[Row] = deque(maxlen=ROWS)

@@ -66,7 +66,7 @@ class LaunchTests:
         self._acceleration, self._acceleration_sd = noise.acceleration, noise.acceleration_sd
         self._scale_variance, self._wind_variance = scale_variance(noise), wind_sd**2
         self._total_variance = reading_variances(noise)[0]
-        self.stroke, self.climb = StrokeTest(), FirstClimb()
+        self.stroke, self.climb = StrokeTest(difference.differential), FirstClimb()
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
         self._rest_sd = 0.0
 
