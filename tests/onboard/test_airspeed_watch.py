@@ -25,10 +25,10 @@ def wander(sd, time, size, generator):
     return found
 
 
-def static_evidence(pressure, lift, *, sd, speed, gusts, seed=0):
+def static_evidence(pressure, lift, *, sd, speed, gusts, seed=0, offset_sd=0.2):
     """W of static pressures, Pa, and lifts, m/s², read with a noise, Pa."""
     generator = np.random.default_rng(seed)
-    test = ClimbTest(sd * sd, float(pressure[0]), 0.2, gusts)
+    test = ClimbTest(sd * sd, float(pressure[0]), offset_sd, gusts)
     read = pressure + sd * generator.standard_normal(len(pressure))
     return np.array([test.add(p, DT, n, WEIGHT, speed) for p, n in zip(read.tolist(), lift.tolist(), strict=True)])
 
@@ -45,6 +45,12 @@ def turn(bank_deg, readings=2000):
 def test_a_level_turn_is_no_climb_that_did_not_come(bank, gusts, sd):
     """However quiet the sensor is, and whether gusts are declared or not: below the level, and far from it."""
     assert static_evidence(np.zeros(2000), turn(bank), sd=sd, speed=32.0, gusts=gusts).max() < 0.7 * SHUT
+
+
+def test_a_turn_that_begins_below_1_g_by_an_offset_of_f_z_is_no_climb_either():
+    """An accelerometer that reads 5 m/s² too little: a turn at 50° passes 1 g by its readings as it is rolled into."""
+    lift = turn(50.0) - 5.0
+    assert static_evidence(np.zeros(2000), lift, sd=2.0, speed=54.0, gusts=True, offset_sd=9.8).max() < 0.7 * SHUT
 
 
 @pytest.mark.parametrize("speed", [32.0, 80.0, 145.0])
