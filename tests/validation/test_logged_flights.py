@@ -113,7 +113,7 @@ def test_a_flight_replays_alike_whatever_it_is_written_as(rate: int, alike: floa
     flight = uavsim.fly("catapult", seed=1699, overrides=[f"accelerometer.rate={rate}", *IDEAL])
     log, settings = as_log(flight), as_believed(flight, *IDEAL)
     tables = {"imu": dict(zip(("t", "fx", "fy", "fz"), log.readings.T, strict=True))}
-    tables |= {name: {"t": one.t, name: one.values} for name, one in log.series.items()}
+    tables |= {name: {"t": one.t, name: one.values} for name, one in log.series.items()}  # noqa: PD011
     found = []
     for suffix, write in (
         (".parquet", lambda table, path: table.to_parquet(path)),

@@ -9,8 +9,9 @@ p_t = p_s + Δp. Two things are converted where no pressure is there, and it is 
 What is made of an airspeed that somebody's estimator has told has that one's zero, its smoothing and its clipping at 0.
 
 A row is of each reading of the total channel. It carries the static pressure that was read last, or within half a
-period after it, with the time stamp of that one, as a head that is polled does. While no total pressure comes, there are rows at the readings of the static one. A reading
-that a faster table repeats until the next one comes (sample-and-hold) counts once.
+period after it, with the time stamp of that one, as a head that is polled does. While no total pressure comes, there
+are rows at the readings of the static one. A reading that a faster table repeats until the next one comes
+(sample-and-hold) counts once.
 """
 
 from collections.abc import Mapping
