@@ -15,7 +15,7 @@ help:
 	@echo "make golden    fly the short flights whose figures are kept, and keep them anew"
 	@echo "make recordings  replay the logs of the folder UAVSIM_RECORDINGS against their right answers"
 	@echo "make bench     what a step costs"
-	@echo "make docs-numbers  run what the docs show and has not been run, and write their pages"
+	@echo "make docs-numbers  run what the docs show and has not been run, and write their pages (half an hour)"
 	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 (installs AeroSandbox)"
 	@echo "make clean     remove the environment and caches"
 
@@ -53,7 +53,7 @@ bench: $(VENV)/.fly
 	$(BIN)/uavsim bench
 
 docs-numbers: $(VENV)/.dev
-	$(BIN)/python scripts/docs_numbers.py --missing
+	$(BIN)/python scripts/docs_numbers.py --missing --jobs 2
 
 aircraft: $(VENV)/.dev
 	$(PIP) install -q -e '.[aircraft]'

@@ -10,10 +10,14 @@ A page has blocks
 what they gave in `docs/results/NAME.json` with the revision, the time and the versions, and writes the blocks anew:
 
     .venv/bin/python scripts/docs_numbers.py NAME…          these
-    .venv/bin/python scripts/docs_numbers.py                all of them, an hour and more
+    .venv/bin/python scripts/docs_numbers.py                all of them, some half an hour with --jobs 2
     .venv/bin/python scripts/docs_numbers.py --missing      those without a result, or with one of another command
     .venv/bin/python scripts/docs_numbers.py --pages        none: only the pages, from what is kept
+    .venv/bin/python scripts/docs_numbers.py --tiny         all of them with a flight or two: whether each works
     .venv/bin/python scripts/docs_numbers.py --list         what there is, and about how long it takes
+
+The cheapest come first, so that a run that is ended has most of them; `--jobs 2` runs two blocks at a time. Those that
+measure time (`alone`) run before the others, with nothing beside them. `--missing` goes on where a run was ended.
 
 `make test` holds every page against what is kept, what is kept against the commands of `docs/numbers.toml`, and runs
 the blocks that say `quick` again. A block that has not been run says so.
@@ -37,7 +41,8 @@ import tempfile
 import tomllib
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 from time import monotonic
@@ -93,8 +98,12 @@ class Block:
         Whether that is shown as text, not as Markdown.
     figures
         File of tests whose figures are shown.
+    whole
+        Whether these tests fly all their seeds, `--whole`, and not the fixed part that `make validate` flies.
     minutes
-        About how long it takes on two cores.
+        About how long it takes on two cores by itself.
+    alone
+        Whether it measures time, so that nothing may run beside it.
     quick
         Whether `make test` runs it again.
     """
@@ -108,13 +117,15 @@ class Block:
     last: str = ""
     fenced: bool = True
     figures: str = ""
+    whole: bool = False
     minutes: float = 1.0
+    alone: bool = False
     quick: bool = False
 
     def commands(self) -> dict[str, str]:
         """What is run, by the row's label."""
         if self.figures:
-            return {"": f"pytest -m slow --whole {self.figures}"}
+            return {"": f"pytest -m slow{' --whole' if self.whole else ''} {self.figures}"}
         if not self.rows:
             return {"": self.command}
         return {label: self.command.replace("{}", own) if self.command else own for label, own in self.rows.items()}
@@ -166,6 +177,33 @@ def run(block: Block) -> dict[str, Any]:
         "versions": {name: version(name) for name in PACKAGES},
         "lines": lines,
     }
+
+
+SMALL = {
+    r"--seeds (\d+)-\d+": r"--seeds \1-2",
+    r"--(flights|runs|hours) \d+": r"--\1 1",
+    r"--trials \d+": "--trials 50",
+    r"--cells [1-9]\d*": "--cells 20",
+}
+"""What is made smaller, by patterns, to see whether a block works."""
+
+
+def small(command: str) -> str:
+    """Return a command with a flight or two."""
+    for pattern, smaller in SMALL.items():
+        command = re.sub(pattern, smaller, command)
+    return command
+
+
+def tiny(block: Block) -> list[str]:
+    """Run a block's commands with a flight or two, and return its lines; of a file of tests, only find them."""
+    if block.figures:
+        found = _run(block.commands()[""], "--collect-only", "-q")
+        return [line for line in found.splitlines() if "::" in line]
+    rows = dict(list(block.rows.items())[-1:])
+    made = replace(block, command=small(block.command), rows={label: small(own) for label, own in rows.items()})
+    lines: list[str] = run(made)["lines"]
+    return lines
 
 
 def revision() -> str:
@@ -359,6 +397,8 @@ def main() -> int:
     parser.add_argument("names", nargs="*", help="blocks; all without it")
     parser.add_argument("--missing", action="store_true", help="those without a result of their command")
     parser.add_argument("--quick", action="store_true", help="those that make test runs again")
+    parser.add_argument("--tiny", action="store_true", help="a flight or two of each; nothing is kept")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="blocks that run at a time")
     parser.add_argument("--pages", action="store_true", help="run none, write the pages")
     parser.add_argument("--list", action="store_true", help="what there is")
     options = parser.parse_args()
@@ -374,12 +414,35 @@ def main() -> int:
         for one in chosen:
             print(f"{one.name}: about {one.minutes:g} min{', quick' if one.quick else ''}")
         return 0
-    for one in () if options.pages else chosen:
-        print(f"{one.name}, about {one.minutes:g} min", flush=True)
-        write(run(one))
-        write_pages(blocks)
+    chosen.sort(key=lambda one: (not one.alone, one.minutes))
+    if options.tiny:
+        for one in chosen:
+            begun = monotonic()
+            print(f"{one.name}:", *(tiny(one) or ["nothing"]), f"{monotonic() - begun:.0f} s", sep="\n", flush=True)
+        return 0
+    if not options.pages:
+        keep(chosen, max(1, options.jobs))
     write_pages(blocks)
     return 0
+
+
+def keep(chosen: Iterable[Block], jobs: int) -> None:
+    """Run blocks, so many at a time, and keep what each gave; of those that fail the first is raised at the end."""
+
+    def one(block: Block) -> None:
+        result = run(block)
+        write(result)
+        print(f"{block.name}: {result['seconds']:.0f} s", flush=True)
+
+    blocks = list(chosen)
+    print(f"{len(blocks)} blocks, about {sum(block.minutes for block in blocks):g} min", flush=True)
+    for block in blocks:
+        if block.alone:
+            one(block)
+    with ThreadPoolExecutor(jobs) as crew:
+        running = [crew.submit(one, block) for block in blocks if not block.alone]
+    for each in running:
+        each.result()
 
 
 if __name__ == "__main__":

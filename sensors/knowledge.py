@@ -205,6 +205,9 @@ class HeadKnowledge:
     ports : PortKnowledge
     temperature_sd : float
         Of the temperature, K: noise, turn-on offset, and what the board is warmer than the air.
+    temperature_white_sd, temperature_step, temperature_lag : float
+        Noise of one reading, rounding included, K; by which it is rounded, K; the time constant of the digital filter
+        behind it, s.
     column, column_sd : float
         Error of the pair's difference per specific force along body x by the air in the tubes, and how far that is
         unknown, Pa/(m/s²).
@@ -224,6 +227,9 @@ class HeadKnowledge:
     static: PressureKnowledge
     ports: PortKnowledge
     temperature_sd: float
+    temperature_white_sd: float
+    temperature_step: float
+    temperature_lag: float
     column: float
     column_sd: float
     walk: float
@@ -285,6 +291,9 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         temperature_sd=hypot(
             thermometer.temperature_noise_sd, thermometer.temperature_offset_sd, settings.thermal.self_heating
         ),
+        temperature_white_sd=thermometer.temperature_noise_sd,
+        temperature_step=thermometer.temperature_step,
+        temperature_lag=thermometer.lag,
         column=column,
         column_sd=COLUMN_SD * abs(column),
         walk=hypot(*(part.walk for part in paired), *(_warming(part, settings.thermal) for part in paired)),

@@ -23,6 +23,7 @@ import uavsim
 from uavsim.flight import Flight
 
 KEPT = Path(__file__).with_name("golden_flights.json")
+CALIBRATION = Path(__file__).parent / "references" / "head_calibration.toml"
 CLOSE = 1e-9  # of a column's root mean square, or of a figure of the score
 
 PLACE = (
@@ -261,6 +262,10 @@ FLIGHTS: dict[str, Wanted] = {
         *NOT_TWICE, *CLIMB, "duration=12",
         'air_data.port_faults=[{kind="ice",start=5,duration=1.5,between_heights=[12,200]}]',
         'air_data.total.faults=[{kind="dead",start=10,size=90000}]',
+    )),
+    "calibrated-by-a-file": ("gusty", 40, (
+        *NOT_TWICE, "duration=8", f"air_data.calibration={CALIBRATION}", "environment.wind_speed=7",
+        "environment.wind_from_deg=50", "air_data.total_port.slipstream=0.04", "air_data.static_port.slipstream=0.03",
     )),
     "course": ("manoeuvres", 34, (
         *NOT_TWICE, "duration=15", "plant.flight_path.push=motor", "plant.flight_path.burn=2.5",

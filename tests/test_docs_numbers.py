@@ -114,3 +114,23 @@ def test_an_excerpt_is_from_one_pattern_to_another() -> None:
     assert numbers._excerpt(block, "a\nb\nc \nd\ne") == ["```text", "b", "c", "d", "```"]
     plain = numbers.Block("one", "uavsim x", fenced=False)
     assert numbers._excerpt(plain, "\n| a |\n\n") == ["| a |"]
+
+
+def test_a_tiny_run_flies_a_flight_or_two() -> None:
+    assert numbers.small("uavsim fly gusty --seeds 1-20 --set a=1") == "uavsim fly gusty --seeds 1-2 --set a=1"
+    assert (
+        numbers.small("uavsim roc --hours 20 --trials 1000 --cells 200")
+        == "uavsim roc --hours 1 --trials 50 --cells 20"
+    )
+
+
+def test_the_cheapest_come_first_and_what_measures_time_is_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[str] = []
+    monkeypatch.setattr(numbers, "run", lambda block: {"name": block.name, "seconds": 0.0})
+    monkeypatch.setattr(numbers, "write", lambda result: order.append(result["name"]))
+    monkeypatch.setattr(numbers, "write_pages", lambda blocks: None)
+    monkeypatch.setattr(sys, "argv", ["docs_numbers.py"])
+    assert numbers.main() == 0
+    assert sorted(order) == sorted(BLOCKS)
+    rank = [(not BLOCKS[name].alone, BLOCKS[name].minutes) for name in order]
+    assert rank == sorted(rank)

@@ -45,11 +45,15 @@ class Calibration:
     ports : tuple of float
         Its errors of the static port's coefficients c₀, c_α, c_αα and c_ββ, and of the slipstream, in their standard
         deviations.
+    wind : tuple of float
+        Those of the wind that is declared, its parts from the south and from the west, in `DECLARED` of the mean wind,
+        and of its growth with the height, in `GROWN`.
     """
 
     total: float = 0.0
     static: float = 0.0
     ports: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    wind: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 NO_CALIBRATION = Calibration()
@@ -59,7 +63,8 @@ def calibrated(scenario: Scenario, streams: Streams) -> Calibration:
     """What a calibration found: done on the units that fly, with errors of its own."""
     a, b, c, d, e = streams("onboard.ports.calibration").standard_normal(5).tolist()
     total, static = _membranes(scenario, streams)
-    return Calibration(total, static, (a, b, c, d, e))
+    south, west, grown = streams("onboard.wind").standard_normal(3).tolist()
+    return Calibration(total, static, (a, b, c, d, e), (south, west, grown))
 
 
 def _membranes(scenario: Scenario, streams: Streams) -> tuple[float, float]:
@@ -90,6 +95,9 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         total_sd=belief.total_noise * thin * total.noise_sd,
         static_sd=belief.static_noise * static.noise_sd,
         temperature_sd=belief.temperature * head.temperature_sd,
+        temperature_white_sd=head.temperature_white_sd,
+        temperature_step=head.temperature_step,
+        temperature_lag=belief.lag * head.temperature_lag,
         total_tuned_sd=thin * total.noise_sd,
         static_tuned_sd=static.noise_sd,
         total_window=belief.lag * total.window,
@@ -176,40 +184,43 @@ def _thin(scenario: Scenario, head: HeadKnowledge) -> float:
 
 
 def _elevation(scenario: Scenario) -> float | None:
-    """Elevation of the rail as the crew believes it, rad; of a rig nothing is believed that is not said."""
+    """Elevation of the rail as the crew believes it, rad; of a rig without one nothing is believed that is not said."""
     told = scenario.flight_computer.rail_elevation_deg
-    if told is None and scenario.plant.chosen.flies:
+    if told is None and scenario.plant.chosen.on_rail:
         told = scenario.launcher.elevation_deg
     return None if told is None else radians(told)
 
 
-def believed_air(scenario: Scenario) -> EstimatorSettings:
-    """Return the estimator's settings with turbulence and humidity as the environment has them, and all bounds."""
+def believed_air(scenario: Scenario, calibration: Calibration = NO_CALIBRATION) -> EstimatorSettings:
+    """Return the estimator's settings with turbulence and humidity as the environment has them, and all bounds.
+
+    The mean wind is declared as somebody has measured it, with errors as they are believed (`Calibration.wind`).
+    """
     settings, belief = _bounded(scenario), scenario.mismatch
     if settings.vapour_fraction is None:
         settings = replace(settings, vapour_fraction=belief.humidity * at_ground(scenario.environment).vapour_fraction)
     height = max(scenario.flight_computer.height, LOWEST * FOOT)
     sd, length = turbulence(scenario.environment, height, scenario.launcher.heading_deg)
     grown = growth(scenario.environment, sqrt(height * scenario.launcher.height))
-    if scenario.plant.chosen.flies:
+    if scenario.plant.chosen.on_rail:
         settings = replace(settings, aided=replace(settings.aided, launch_height=scenario.launcher.height))
     if grown > 0.0:
         angle = radians(scenario.launcher.heading_deg - scenario.environment.wind_from_deg)
-        known = belief.wind * grown * cos(angle)
+        known = belief.wind * grown * (1.0 + GROWN * calibration.wind[2]) * cos(angle)
         settings = replace(
             settings, aided=replace(settings.aided, shear=belief.gust * GROWN * grown, shear_along=known)
         )
-    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario)))
+    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario, calibration)))
     sd *= belief.gust
     if not sd > 0.0:
         return settings
     return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length, gust_height=height))
 
 
-def _rail_wind(scenario: Scenario) -> dict[str, float]:
+def _rail_wind(scenario: Scenario, calibration: Calibration) -> dict[str, float]:
     """The wind past the aircraft on its rail as it is declared, unless the estimator's settings have one."""
     environment, launcher, share = scenario.environment, scenario.launcher, scenario.mismatch.wind
-    if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.flies:
+    if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.on_rail:
         return {}
     up = radians(launcher.elevation_deg)
     north, east = mean_wind(environment, launcher.height)
@@ -217,6 +228,8 @@ def _rail_wind(scenario: Scenario) -> dict[str, float]:
     sd = hypot(scenario.mismatch.gust * turbulent, share * DECLARED * hypot(north, east)) if share > 0.0 else 0.0
     if not sd > 0.0:
         return {}
+    off = DECLARED * hypot(north, east)
+    north, east = north + off * calibration.wind[0], east + off * calibration.wind[1]
     heading = radians(launcher.heading_deg)
     head = -(north * cos(heading) + east * sin(heading))
     right = north * sin(heading) - east * cos(heading)

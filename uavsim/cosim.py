@@ -137,7 +137,7 @@ def believed(scenario: Scenario, release_time: float, calibration: Calibration) 
     return Believed(
         scenario.accelerometer.description().rate,
         believed_noise(scenario, calibration),
-        believed_air(scenario),
+        believed_air(scenario, calibration),
         tare_window(scenario, release_time),
         believed_flow(scenario),
     )

@@ -15,6 +15,7 @@ from airspeed_model.printing import code, sum_of, times
 NAMES = [state.name for state in STATES]
 Entries = dict[str, sp.Expr]
 Namer = Callable[[str], str]
+LEARNED = "d"  # the state that may be held as it is
 
 
 def entry(i: str, j: str) -> str:
@@ -142,9 +143,15 @@ def spread(slopes: dict[str, str], *more: str) -> str:
 
 
 def correct(states: str, name: Namer) -> list[str]:
-    """Write x ← x + K ν and P ← P − K g, with K = g over the innovation's variance."""
-    return [
-        *(f"k{i} = g{i} / spread" for i in states),
-        *(f"{name(i)} += k{i} * innovation" for i in states),
-        *(f"{name(i + j)} -= k{i} * g{j}" for i, j in pairs(states)),
-    ]
+    """Write x ← x + K ν and P ← P − K g, with K = g over the innovation's variance.
+
+    A state that is not learned (`LEARNED`) has K = 0: it stays, and P with it, but what the others have to do with it
+    changes as theirs do (Schmidt's filter).
+    """
+    gains = {i: f"g{i} / spread" if i != LEARNED else f"self._learns * g{i} / spread" for i in states}
+    lines = [f"k{i} = {gain}" for i, gain in gains.items()]
+    lines += [f"{name(i)} += k{i} * innovation" for i in states]
+    for i, j in pairs(states):
+        gained, other = (i, j) if i != LEARNED or i == j else (j, i)
+        lines.append(f"{name(i + j)} -= k{gained} * g{other}")
+    return lines

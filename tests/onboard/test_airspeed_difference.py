@@ -9,7 +9,8 @@ from uavsim import airdata
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel, build
 from uavsim.onboard.airspeed.difference import ZERO, Difference
 from uavsim.onboard.airspeed.energy_model import isentropic, total_pressure, total_slopes
-from uavsim.onboard.airspeed.rail import RailCheck, limits
+from uavsim.onboard.airspeed.measured import limits
+from uavsim.onboard.airspeed.rail import RailCheck
 from uavsim.onboard.airspeed.stroke import StrokeTest
 from uavsim.onboard.flow_through import MOVED, FlowThrough, FlowThroughSettings
 
@@ -89,9 +90,13 @@ def test_a_differential_sensor_that_is_stuck_on_the_rail_is_told():
     assert check.broken(2.0) == {"total": "stuck"}
 
 
-@pytest.mark.parametrize(("sign", "found"), [(1.0, ""), (0.0, "frozen"), (-1.0, "swapped")])
-def test_in_the_stroke_a_difference_that_falls_is_of_swapped_tubes(sign, found):
-    test = StrokeTest()
+@pytest.mark.parametrize(
+    ("differential", "sign", "found"),
+    [(True, 1.0, ""), (True, 0.0, "frozen"), (True, -1.0, "swapped"), (False, -1.0, "frozen")],
+)
+def test_in_the_stroke_a_difference_that_falls_is_of_swapped_tubes(differential, sign, found):
+    """A total pressure that falls says nothing of the static port."""
+    test = StrokeTest(differential)
     rest = [(0.01 * k, ZERO, STATIC, WARM, 0.01 * k, 0.01 * k) for k in range(20)]
     test.begin(rest, tare_end=-inf, end=0.2, variance=1.5**2, wind=0.0, density=1.225)
     said = ""

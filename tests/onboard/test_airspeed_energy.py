@@ -147,3 +147,28 @@ def test_second_order_expects_what_a_wide_speed_reads():
         f = made(speed_sd=0.5, static_sd=1e-6, difference_sd=0.0, acceleration_sd=0.0)
         found.append(f.total(f.p * (1.0 + v * v / HEAT) ** 3.5 + generator.normal(0.0, 0.05), 0.0025, 0.0, HEAT))
     assert np.mean(found) == pytest.approx(1.0, abs=0.11)
+
+
+@pytest.mark.parametrize(("each", "static_each"), [(0.63, 0.9), (0.3, 0.7)])
+def test_a_difference_that_is_not_known_stays_in_steady_flight(each, static_each):
+    """30 s of level flight in still air, d known to 5 Pa: half a minute tells nothing of it, and V is off by as much.
+
+    Its slope is that of a noisy estimate. Corrected by every reading, d walked by 5 to 20 Pa, in either direction, as
+    the total pressure was taken with its bend or without; its variance did not change.
+    """
+    generator = np.random.default_rng(8)
+    f = made(difference_sd=5.0, difference_walk=0.0, static_sd=1.0)
+    f.v, f.vv, f.s, f.ss, f.bs = 32.0, 25.0 / (DENSITY * 32.0) ** 2 + 0.01, 0.0, 0.1, 0.0
+    f.vd = -25.0 / (DENSITY * 32.0)
+    f.know_push()
+    f.hold_difference()
+    total = 101_325.0 * (1.0 + 32.0**2 / HEAT) ** 3.5
+    for _ in range(2400):
+        f.fly(
+            0.0125, generator.normal(0.0, 0.01), 1.25e-4, DENSITY, generator.normal(101_325.0, static_each),
+            static_each**2, 0.0, generator.normal(total, each), each**2, HEAT,
+        )  # fmt: skip
+    assert f.dd == 25.0
+    assert f.d == 0.0
+    assert abs(f.v - 32.0) < 0.05
+    assert math.sqrt(f.vv) == pytest.approx(5.0 / (DENSITY * 32.0), rel=0.05)

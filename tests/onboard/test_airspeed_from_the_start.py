@@ -34,6 +34,24 @@ def test_a_dead_sensor_is_named_at_the_launch_and_never_taken_back(channel, colu
     assert not flown.after(0.0)[:, 3].any() or channel == "thermometer"
 
 
+@pytest.mark.parametrize(("channel", "column"), [("total", 1), ("static", 2)])
+@pytest.mark.parametrize("step", [0.0, 4.0])
+def test_a_pressure_at_the_end_of_its_range_is_none_in_flight_either(channel, column, step):
+    """With or without steps: it has been clipped. On the rail the same rule holds (`measured`)."""
+    end = 103_000.0
+    noise = replace(NOISE, **{f"{channel}_range": (30_000.0, end), f"{channel}_step": step})
+    clipped = end - 0.4 * step
+    readings = spoil(fly(FLIGHT, 9604), column, LAUNCH + 4.0, "value", size=clipped)
+    flown = run(readings, noise=noise)
+    assert (channel, "range") in {(name, word) for _, _, name, word in flown.faults}
+    check = RailCheck(noise, -1.0)
+    for k in range(200):
+        row = [0.01 * k, 95_000.0 + k % 7, 95_000.0 + k % 5, 288.0, 0.01 * k, 0.01 * k]
+        row[column] = clipped
+        check.add(*row)
+    assert check.broken(2.0) == {channel: "range"}
+
+
 @pytest.mark.parametrize(("channel", "column", "how", "kind", "size"), DEAD)
 def test_the_rail_says_what_is_wrong(channel, column, how, kind, size):
     """With a reason that names it; a healthy head has none."""
@@ -47,6 +65,43 @@ def test_the_rail_says_what_is_wrong(channel, column, how, kind, size):
         doubts = check.doubts(row[0])
         assert [reason.startswith(channel) for reason in doubts] == ([True] if spoilt else [])
         assert check.broken(row[0]) == ({channel: kind} if spoilt else {})
+
+
+def _warm(flight, seed, sd, step):
+    """Readings with a thermometer of that noise and step, K, and what is believed of it."""
+    readings = fly(flight, seed)
+    air = readings.air.copy()
+    air[:, 3] += sd * np.random.default_rng(seed).standard_normal(len(air))
+    air[:, 3] = np.round(air[:, 3] / step) * step
+    noise = replace(NOISE, temperature_white_sd=float(np.hypot(sd, step / 12.0**0.5)), temperature_step=step)
+    return replace(readings, air=air), replace(noise, rail_elevation=float(np.radians(flight.elevation_deg)))
+
+
+@pytest.mark.parametrize(("sd", "named"), [(0.005, True), (0.0005, False)])
+@pytest.mark.parametrize("start", [0.5, LAUNCH + 6.0])
+def test_a_thermometer_that_holds_its_value_is_named_where_its_noise_would_show(sd, named, start):
+    """On the rail and in flight, within 1 s; a quiet one of coarse steps repeats itself, and nothing is said."""
+    readings, noise = _warm(FLIGHT, 9610, sd, 0.005)
+    assert not run(readings, noise=noise).news
+    readings = spoil(readings, 3, start, "stuck")
+    news = run(readings, noise=noise).news
+    assert [row[1:] for row in news] == ([("airspeed_fault", "thermometer", "stuck")] if named else [])
+    assert not named or news[0][0] < max(start, LAUNCH) + 1.0
+    check = RailCheck(noise, 4.0)
+    for row in readings.air[readings.air[:, 0] < LAUNCH - 0.1].tolist():
+        check.add(*row)
+    assert check.broken(row[0]) == ({"thermometer": "stuck"} if named and start < LAUNCH else {})
+
+
+def test_a_conversion_that_is_read_twice_is_no_repetition():
+    """A head at 100 Hz reads a part at 3 Hz more than 25 times each: its thermometer is alive."""
+    readings, noise = _warm(replace(FLIGHT, duration=0.5), 9611, 0.005, 0.005)
+    check = RailCheck(noise, 4.0)
+    rows = readings.air[readings.air[:, 0] < LAUNCH - 0.1]
+    for k, row in enumerate(rows.tolist()):
+        last = rows[k - k % 30]
+        check.add(row[0], row[1], float(last[2]), float(last[3]), row[4], float(last[5]))
+    assert check.broken(row[0]) == {}
 
 
 def test_quiet_and_coarse_parts_are_alive():

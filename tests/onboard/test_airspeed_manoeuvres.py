@@ -62,6 +62,25 @@ def test_an_accelerometer_that_is_silent_for_2_s_condemns_no_port():
     assert np.abs(flown.after(1.0)[:, 4]).max() < 1.0
 
 
+@pytest.mark.parametrize("gust_sd", [0.0, 1.0])
+def test_an_accelerometer_that_repeats_itself_in_flight_is_named_and_the_pressures_go_on(gust_sd):
+    """By its description a live one does not: it is named within 1 s, and no port, and taken back when it lives."""
+    flight = Flight(duration=14.0, gust_sd=gust_sd)
+    readings = fly(flight, 9350)
+    force = readings.force.copy()
+    bad = (force[:, 0] > LAUNCH + 6.0) & (force[:, 0] < LAUNCH + 11.0)
+    force[bad, 1:] = force[bad, 1:][0]
+    flown = run(replace(readings, force=force), believed(flight))
+    assert [row[1:] for row in flown.news] == [
+        ("airspeed_fault", "accelerometer", "stuck"),
+        ("airspeed_recovered", "accelerometer", ""),
+    ]
+    assert flown.news[0][0] < LAUNCH + 7.0
+    rows = flown.after(6.0)
+    assert rows[:, 3].all()
+    assert np.mean(np.abs(rows[:, 4]) < 1.96 * rows[:, 2]) > 0.9
+
+
 @pytest.mark.parametrize("size", [2.5, -3.0])
 def test_an_offset_that_jumps_is_charged_to_the_accelerometer(size):
     """In still air a step of f_x from one reading to the next: no port is flagged, V stays right, the part is named."""
@@ -80,3 +99,14 @@ def test_the_watch_begins_when_the_push_has_ended():
         flight = replace(MANOEUVRES[name], duration=11.0)
         begins = run(fly(flight, 9500), believed(flight)).filter._progress.steady_from - LAUNCH
         assert least < begins < most
+
+
+@pytest.mark.parametrize("rate", [0.1, -0.1, 0.3])
+def test_an_accelerometer_that_drifts_in_still_air_is_in_the_error_bar(rate):
+    """A total pressure that stands still may be that of a shut port; the bar holds both, and no valid one is wrong."""
+    readings = fly(Flight(duration=18.0), 9420)
+    force = readings.force.copy()
+    force[:, 1] += rate * np.clip(force[:, 0] - LAUNCH - 7.0, 0.0, None)
+    rows = run(replace(readings, force=force)).after(7.0)
+    assert np.mean(np.abs(rows[:, 4]) < 1.96 * rows[:, 2]) > 0.95
+    assert np.abs(rows[rows[:, 3] > 0.0, 4]).max() < 3.0

@@ -29,6 +29,8 @@ NOISE = NoiseModel(
     accelerometer_offset_sd=0.2,
     lift_offset_sd=0.2,
     accelerometer_rate=500.0,
+    accelerometer_white_sd=0.1,
+    accelerometer_step=0.01,
     head_rate=100.0,
 )
 SETTINGS = EstimatorSettings(kind="aided", fastest=340.0, aided=AidedSettings())

@@ -155,8 +155,7 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
         settings.scenario,
         named=settings.named,
         noise=settings.noise,
-        stretches=rests.still or rests.calm,
-        rests=bool(rests.still or rests.calm),
+        rests=rests,
     )
     said += belief.said
     rows = head.rows()

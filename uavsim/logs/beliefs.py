@@ -18,7 +18,7 @@ from uavsim.beliefs import believed_air, believed_flow, believed_noise
 from uavsim.cosim import Believed
 from uavsim.logs.gusts import gust_of
 from uavsim.logs.head import Channel, Head
-from uavsim.logs.quiet import AVERAGED, Stretch, as_white, noise_at_rest, noise_throughout, step_of
+from uavsim.logs.quiet import AVERAGED, Rests, Stretch, noise_of, noise_throughout, step_of
 from uavsim.logs.recording import Recording
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.head_errors import HeadErrors
@@ -96,8 +96,7 @@ def believed_of_log(
     *,
     named: Sequence[str],
     noise: Noise,
-    stretches: list[Stretch],
-    rests: bool,
+    rests: Rests,
 ) -> Sourced:
     """What the onboard code believes of a log's sensors.
 
@@ -111,12 +110,11 @@ def believed_of_log(
         Those keys, without their values.
     noise
         What the user says of it.
-    stretches
-        In which the aircraft stands still.
     rests
-        Whether the log has any rest, so that the height above it is known.
+        Of the log.
     """
-    of_parts, ours = believed_noise(scenario), _from_log(recording, head, stretches)
+    of_parts, ours = believed_noise(scenario), _from_log(recording, head, rests)
+    stretches = rests.still or rests.calm
     where = (
         f"{len(stretches)} quiet stretches"
         if len(stretches) > 1
@@ -156,7 +154,7 @@ def believed_of_log(
     flow = believed_flow(scenario) if head.differential and "total" in both else None
     length = scenario.estimator.aided.gust_length
     gust = gust_of(head, recording.readings, model, zero=_zero(head, stretches), length=length)
-    air, of_air = _air(scenario, named, gust, _height(head) if rests else 0.0)
+    air, of_air = _air(scenario, named, gust, _height(head) if stretches else 0.0)
     told = Believed(recording.rate, model, air, None, flow)
     numbers = (
         f"one reading has {model.total_sd:.2g} Pa ({'difference' if head.differential else 'total pressure'}), "
@@ -202,13 +200,11 @@ def _part(scenario: Scenario, sensor: str) -> str:
     return scenario.air_data.sensors()[0 if sensor == "total" else 1].preset
 
 
-def _from_log(recording: Recording, head: Head, stretches: list[Stretch]) -> NoiseModel:
+def _from_log(recording: Recording, head: Head, rests: Rests) -> NoiseModel:
     """What the log itself shows, and what is usual where it does not."""
-    at_rest = [noise_at_rest(channel, stretches) for channel in (head.total, head.static)]
-    in_flight = noise_throughout(head.total), noise_throughout(head.static, AVERAGED)
     total, static = (
-        max(LEAST_SD, as_white([flying] if rest is None else [rest, flying]), step_of(channel) / 12.0**0.5)
-        for rest, flying, channel in zip(at_rest, in_flight, (head.total, head.static), strict=True)
+        max(LEAST_SD, noise_of(channel, rests, averaged), step_of(channel) / 12.0**0.5)
+        for channel, averaged in ((head.total, 0.0), (head.static, AVERAGED))
     )
     made_height = "baro_height" in head.made
     force = _force_noise(recording)

@@ -9,8 +9,9 @@ correlation R; a parabola through the best three has the delay. Its standard dev
 
     σ_τ = σ_r/√Σ(dΔp/dt)²
 
-σ_r being what remains, over as many points as are not alike, and of the slope what neither shape can make. What is found is the age of the pressure, its
-tubes and filters included, and the clocks' offset together. One launch cannot tell them apart.
+σ_r being what remains, over as many points as are not alike, and of the slope what neither shape can make. What is
+found is the age of the pressure, its tubes and filters included, and the clocks' offset together. One launch cannot
+tell them apart.
 """
 
 from dataclasses import dataclass
@@ -29,7 +30,7 @@ FINE = 200.0  # Hz, of the grid on which a pressure is compared at the least
 DENSITY = (0.3, 3.0)  # of the factor between F² and Δp over ½ρ at sea level, beyond which it is another event
 STRONGEST = 25.0  # m/s, of a headwind at a launch
 RHO = 1.225  # kg/m³
-FAR = 3.0  # standard deviations of the delay that are told
+FAR = 4.0  # standard deviations of the delay, from which on a clock is set
 MOST_GRID = 4_000_000  # places that are compared
 
 
@@ -44,7 +45,7 @@ class Delay:
     def beyond(self, age: float, period: float) -> float:
         """Return what of it the clocks are off by, s, if a pressure has a known age; 0 if that may be chance.
 
-        Chance is what three standard deviations allow, and half of a period of the pressures.
+        Chance is what four standard deviations allow, and half of a period of the pressures.
         """
         off = self.delay - age
         return off if abs(off) > max(FAR * self.sd, 0.5 * period) else 0.0

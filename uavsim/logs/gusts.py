@@ -6,9 +6,9 @@ With V_p the airspeed of the pressures and U = ∫f_x dt, the increments of X = 
 
 n is the pressure's noise, q the turbulence along the path (a first-order process of the length L) with the
 accelerometer's own noise, and c what gravity and the angle of attack turn into f_x. The variance is that of a Gaussian
-with the same median of squares, so that manoeuvres and landings do not count. Turbulence comes and goes: what is believed
-is that of a quieter stretch, one in three, for the watch over the ports takes stillness for a fault where gusts are
-declared.
+with the same median of squares, so that manoeuvres and landings do not count. Turbulence comes and goes. What is
+believed is that of a quieter stretch, one in seven: the watch over the ports takes stillness for a fault where gusts
+are declared.
 """
 
 from math import sqrt
@@ -25,7 +25,7 @@ FLIES = 8.0  # m/s, from which on it is a flight
 RHO = 1.225  # kg/m³
 FEWEST = 60  # increments of a stretch
 BLOCK, MANY = 15.0, 600  # s and readings of a stretch, whichever is longer. By hand
-QUIETER = 33.0  # percent of the stretches that are quieter than the one that counts. By hand
+QUIETER = 15.0  # percent of the stretches that are quieter than the one that counts. By hand
 MEDIAN_SQUARE = 0.4549  # of a standard normal variable
 MOST = 5.0  # m/s: severe turbulence
 

@@ -8,9 +8,10 @@ p_t = p_s + Δp. Two things are converted where no pressure is there, and it is 
 
 What is made of an airspeed that somebody's estimator has told has that one's zero, its smoothing and its clipping at 0.
 
-A row is at each reading of the total channel. It carries the last static pressure with the time stamp of that one, as
-a head that is polled does. While no total pressure comes, there are rows at the readings of the static one. A reading
-that a faster table repeats until the next one comes (sample-and-hold) counts once.
+A row is of each reading of the total channel. It carries the static pressure that was read last, or within half a
+period after it, with the time stamp of that one, as a head that is polled does. While no total pressure comes, there
+are rows at the readings of the static one. A reading that a faster table repeats until the next one comes
+(sample-and-hold) counts once.
 """
 
 from collections.abc import Mapping
@@ -47,6 +48,10 @@ class Channel:
         """Return the last reading at each time; NaN before the first."""
         before = np.searchsorted(self.t, t, side="right") - 1
         return np.where(before >= 0, self.values[np.maximum(before, 0)], np.nan)
+
+    def ends(self, t: Array) -> Array:
+        """Return the time stamp of the last reading at each time, s; NaN before the first."""
+        return Channel(self.name, self.t, self.t, self.source).at(t)
 
     def later(self, shift: float) -> "Channel":
         """The same with its clock set on by a shift, s."""
@@ -96,8 +101,9 @@ class Head:
         """Return what the head says, shape (n, 6): t, p_total, p_static, temperature, t_total, t_static."""
         total, static = self.total, self.static
         t = np.union1d(total.t, static.t[_apart(static.t, total.t) > SILENT * total.period])
-        channel, below = total.at(t), static.at(t)
-        t_total, t_static = (Channel("", one.t, one.t, "").at(t) for one in (total, static))
+        channel, below = total.at(t), static.at(t + 0.5 * total.period)
+        t_total, t_static = total.ends(t), static.ends(t + 0.5 * total.period)
+        t = np.fmax(t, t_static)
         warm = np.full(t.size, self.assumed_temperature) if self.temperature is None else self.temperature.at(t)
         if self.differential:
             channel = channel + below

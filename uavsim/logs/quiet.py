@@ -31,6 +31,7 @@ LONGEST = 60.0  # s of a stretch that are looked at for noise
 AVERAGED = 0.25  # s, of the longest means
 SECOND, FEW = 1.0, 3  # s over which noise is judged, and differences in it at the least
 ENOUGH = 100  # differences of means in all, of which the noise is known to a tenth
+SHAKEN = 2.0  # times as much as at rest, from which on a sensor is noisier in flight; less is turbulence. By hand
 COLOURED = 1.4  # times as much as single readings show, from which on noise is coloured. By hand
 BEYOND = 3.0  # standard deviations, to which a second difference is cut: 1 % less of Gaussian noise
 QUARTILE = 0.6745  # of a standard normal variable
@@ -162,6 +163,27 @@ def noise_throughout(channel: Channel, averaged: float = 0.0) -> float:
             usual = np.minimum(bends, BEYOND * ROBUST * float(np.median(bends)) or np.inf)
             found.append(sqrt(m / 6.0 * float(np.mean(usual**2))))
     return as_white(found) if found else 0.0
+
+
+def noise_of(channel: Channel, rests: Rests, averaged: float) -> float:
+    """Noise of a channel of the head, by its rest, or by its flight if that is much noisier, or where there is no rest.
+
+    Where the aircraft never stands still, as in a hand, single readings of its rest count: means of them hold the wind.
+    """
+    flying = noise_throughout(channel, averaged)
+    resting = noise_at_rest(channel, rests.still)
+    if resting is None and rests.calm:
+        resting = noise_throughout(_within(channel, rests.calm))
+    if not resting:
+        return flying
+    return flying if flying > SHAKEN * resting else resting
+
+
+def _within(channel: Channel, stretches: list[Stretch]) -> Channel:
+    inside = np.zeros(channel.t.size, bool)
+    for stretch in stretches:
+        inside |= (channel.t >= stretch.start) & (channel.t <= stretch.end)
+    return Channel(channel.name, channel.t[inside], channel.values[inside], channel.source)
 
 
 def _means(channel: Channel, averaged: float) -> list[int]:

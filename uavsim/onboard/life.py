@@ -6,7 +6,9 @@ range    nothing but readings at or beyond the ends of the range for so long
 stuck    the same number for longer than its noise allows (`repeats`)
 """
 
-from math import inf, isfinite, nan
+from math import inf, isfinite
+
+from uavsim.onboard.repeats import Row
 
 WORDS = {
     "silent": "no reading comes",
@@ -27,21 +29,30 @@ class SensorLife:
         How long it may be silent, s.
     row : float
         How often it may repeat a number; infinity: repetition says nothing.
+
+    Attributes
+    ----------
+    row : Row
+        How often it has.
     """
 
-    __slots__ = ("_came", "_first", "_good", "_high", "_last", "_low", "_nan", "_pause", "_row", "_same")
+    __slots__ = ("_came", "_first", "_good", "_high", "_low", "_nan", "_pause", "row")
 
     def __init__(self, bounds: tuple[float, float], pause: float, row: float = inf) -> None:
-        (self._low, self._high), self._pause, self._row = bounds, pause, row
+        (self._low, self._high), self._pause, self.row = bounds, pause, Row(row)
         self.forget()
 
     def forget(self) -> None:
         """Begin anew."""
         self._first, self._came, self._good = inf, -inf, -inf
-        self._last, self._same, self._nan = nan, 0, False
+        self._nan = False
+        self.row.forget()
 
-    def add(self, t: float, reading: float, new: bool = True) -> None:
-        """Take a value at a time, s, and whether it is a new one; a conversion that is polled again is not."""
+    def add(self, t: float, reading: float, new: bool = True, counts: bool = True) -> None:
+        """Take a value at a time, s, and whether it is a new one; a conversion that is polled again is not.
+
+        One that does not count may be of a conversion that has been read before: it is no repetition.
+        """
         if self._first == inf:
             self._first = t
         if not new:
@@ -49,8 +60,8 @@ class SensorLife:
         self._came = t
         if self._low < reading < self._high:
             self._good = t
-            self._same = self._same + 1 if reading == self._last else 0
-            self._last = reading
+            if counts:
+                self.row.add(reading)
         else:
             self._nan = not isfinite(reading)
 
@@ -63,4 +74,4 @@ class SensorLife:
             return "silent"
         if self._good < since:
             return "invalid" if self._nan else "range"
-        return "stuck" if self._same >= self._row else ""
+        return "stuck" if self.row.stuck else ""

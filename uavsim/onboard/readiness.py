@@ -10,13 +10,13 @@ An offset within that is found on the rail and flown with (`uavsim.onboard.rail_
 is told, as an event, whenever it changes.
 """
 
-from math import hypot, inf
+from math import inf
 
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.life import WORDS, SensorLife
 from uavsim.onboard.plausible import MOST_FORCE
 from uavsim.onboard.rail_offset import RailOffset
-from uavsim.onboard.repeats import alike, longest_row
+from uavsim.onboard.repeats import force_row
 
 SILENT = 0.25  # s: 250 readings at 1 kHz. By hand; a launch is recognised in a tenth of that
 PERIODS = 10.0  # the same of a slow accelerometer
@@ -47,11 +47,10 @@ class Readiness:
         self._noise, self._rail = noise, rail
         low, high = noise.accelerometer_range
         rate = noise.accelerometer_rate
-        p = alike(hypot(noise.accelerometer_white_sd, noise.accelerometer_step / 12.0**0.5), noise.accelerometer_step)
         self._life = SensorLife(
             (max(low, -MOST_FORCE), min(high, MOST_FORCE)),
             max(SILENT, PERIODS / rate),
-            max(longest_row(p), rate * SILENT),
+            max(force_row(noise), rate * SILENT),
         )
         self.due = -inf
         self.forget()

@@ -12,7 +12,11 @@ A digital filter makes neighbours alike: of a first-order one of the time consta
 noise of σ √(T/(T + τ)) alone.
 """
 
-from math import ceil, erf, inf, log, sqrt
+from math import ceil, erf, hypot, inf, log, nan, sqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from uavsim.onboard.airspeed.interface import NoiseModel
 
 RARE = 1e-9  # a reading: once in four months at 100 Hz
 # readings. A shorter row is never held against a sensor: description and unit may differ. By hand
@@ -38,6 +42,8 @@ def alike(sd: float, step: float, lag: float = 0.0, rate: float = 100.0) -> floa
     rate : float
         Readings a second, Hz.
     """
+    if not sd > 0.0:  # nothing makes its numbers differ
+        return 1.0
     if not step > 0.0:
         return 0.0
     variance = (sd * sd - step * step / 12.0) / (1.0 + lag * rate)
@@ -52,6 +58,54 @@ def longest_row(p: float) -> float:
         return inf
     row = ceil(log(RARE) / log(p))
     return inf if row > MOST else max(LEAST, row)
+
+
+def force_row(noise: "NoiseModel") -> float:
+    """Return how many times a live accelerometer may repeat a number: by the noise of the part alone, unshaken."""
+    sd = noise.accelerometer_white_sd
+    step = noise.accelerometer_step
+    sd = hypot(sd, step / 12.0**0.5) if sd > 0.0 else 0.0
+    return longest_row(alike(sd, step, noise.accelerometer_lag, noise.accelerometer_rate))
+
+
+def warmth_row(noise: "NoiseModel") -> float:
+    """Return the same of the thermometer: where its steps are far above its noise infinity, for it cannot be told."""
+    return longest_row(
+        alike(noise.temperature_white_sd, noise.temperature_step, noise.temperature_lag, noise.head_rate)
+    )
+
+
+class Row:
+    """How often the last number has come again.
+
+    Parameters
+    ----------
+    most : float
+        How often it may; infinity: repetition says nothing.
+
+    Attributes
+    ----------
+    stuck : bool
+        Whether it has come again for longer than noise allows.
+    """
+
+    __slots__ = ("_last", "_most", "_same", "stuck")
+
+    def __init__(self, most: float) -> None:
+        self._most = most
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self._last, self._same, self.stuck = nan, 0, False
+
+    def add(self, value: float) -> None:
+        """Take a new value."""
+        if value == self._last:
+            self._same += 1
+            self.stuck = self._same >= self._most
+        elif value == value:
+            self._last, self._same, self.stuck = value, 0, False
 
 
 def apart(p: float) -> float:

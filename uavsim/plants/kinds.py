@@ -59,6 +59,11 @@ class Kind:
     launcher: tuple[str, ...] = ()
     ours: bool = False
 
+    @property
+    def on_rail(self) -> bool:
+        """Whether its run begins at rest on the launcher's rail, in the air of the environment."""
+        return self.flies or self.air
+
 
 KINDS: Registry[Kind] = Registry("plant")
 """Every kind that is registered."""

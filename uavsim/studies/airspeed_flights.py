@@ -32,6 +32,7 @@ from uavsim.onboard.airspeed import (
     PaperFilter,
     TareWindow,
 )
+from uavsim.onboard.airspeed.rail_wind import CALM
 from uavsim.onboard.airspeed.rest_force import BLOCK, WANDER
 from uavsim.onboard.airspeed.rest_wind import HIDDEN, VISIBLE
 from uavsim.onboard.rail_offset import RailOffset, known
@@ -50,13 +51,17 @@ NORMAL_95 = 1.959964  # quantile of 97.5 %
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Course:
-    """One flight's true course on times from `-LEAD` on in steps of `STEP` since the true launch; shape (n,) each."""
+    """One flight's true course on times from `-LEAD` on in steps of `STEP` since the true launch; shape (n,) each.
+
+    The air's speed along body x is None in a course that was kept by an earlier version.
+    """
 
     airspeed: Array
     slope: Array
     static: Array
     force: Array
     temperature: float
+    along: Array | None = None
 
 
 class RememberingFilter(AidedFilter):
@@ -88,7 +93,9 @@ def replayed(flight: Flight) -> Array:
     scenario = scenario_of(flight)
     draws = draw(scenario)
     noise = believed_noise(scenario, draws.calibration)
-    estimator = RememberingFilter(believed_air(scenario), noise, tare_window(scenario, draws.release_time))
+    estimator = RememberingFilter(
+        believed_air(scenario, draws.calibration), noise, tare_window(scenario, draws.release_time)
+    )
     rail = RailOffset(noise)
     turn = linear(attitude(*scenario.accelerometer.mounting_deg))
     launch = flight.score["launch"]["detected_time"]
@@ -128,6 +135,7 @@ def course(flight: Flight) -> Course:
         static=np.interp(axis, t, truth["p_static"].to_numpy()),
         force=np.interp(axis, t, force - rest),
         temperature=float(truth["temperature"].iloc[-1]),
+        along=np.interp(axis, t, speed * np.cos(truth["alpha"].to_numpy()) * np.cos(truth["beta"].to_numpy())),
     )
 
 
@@ -141,6 +149,7 @@ def together(courses: list[Course]) -> Courses:
         static=np.stack([c.static[:n] for c in courses]),
         force=np.stack([c.force[:n] for c in courses]),
         temperature=float(np.mean([c.temperature for c in courses])),
+        along=np.stack([(c.airspeed if c.along is None else c.along)[:n] for c in courses]),
     )
 
 
@@ -181,7 +190,13 @@ def bound_of(flight: Flight, courses: Courses, kind: type[B]) -> tuple[Array, B]
     schedule = Schedule(start, t[rows], total_end, static_end, wings[0] if wings else np.inf)
     speed = np.interp(start, courses.t, courses.airspeed.mean(axis=0))
     at_rest = (air.cover_off + start) * min(air.rate, rates[0])
-    sigma = float(np.hypot(np.hypot(noise.total_sd, static_sd) / np.sqrt(max(1.0, at_rest)), tare))
+    seen_sd = float(np.hypot(noise.total_sd, static_sd) / np.sqrt(max(1.0, at_rest)))
+    declared = settings.aided.rail_wind_sd
+    if declared > 0.0 or air.tare == "none":
+        apart = tare if air.tare == "covered" else noise.difference_sd
+        begun = Start(rest, apart, declared if declared > 0.0 else CALM, seen_sd)
+        return t[rows], kind(courses, schedule, settings, noise, begun)
+    sigma = float(np.hypot(seen_sd, tare))
     square = 2.0 * sigma * GAS_CONSTANT_DRY_AIR * courses.temperature / float(courses.static[:, 0].mean())
     wind_sd = 0.5 * square / speed if speed * speed >= VISIBLE**2 * square else HIDDEN * np.sqrt(square)
     begun = Start(rest, tare, min(float(wind_sd), settings.wind_sd))

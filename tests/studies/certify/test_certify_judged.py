@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from uavsim.score_keys import PHASES
-from uavsim.studies.certify import healthy, in_flight, offset
+from uavsim.studies.certify import from_start, healthy, in_flight, offset
 from uavsim.studies.certify.verdict import Verdict
 from uavsim.views.certified import coverage, save_coverage
 
@@ -157,3 +157,24 @@ def test_a_healthy_flight_without_a_flag() -> None:
     rows = [{**row, "flagged": None, "fault": None, "channel": ""} for row in seen("healthy-calm")]
     (check,) = in_flight.judge(rows, 1).checks
     assert check.met
+
+
+def test_both_errors_of_readiness_are_counted() -> None:
+    """By hand: 1 of 882 sound ones not ready; of 8 dead accelerometers, 2 of those that died late were ready."""
+    rows = all_well()
+    rows[0] |= {"ready": False}
+    first = healthy.judge(rows, 1).tables["readiness"][0]
+    assert (first["of"], first["told"], first["not ready"]) == ("all", 882, 1)
+    assert first["low"] < 1 / 882 < first["high"]
+    dead = [
+        {
+            "number": 50_000 + i, "case": "accelerometer dead", "outcome": "cruise", "right": True,
+            "start": 0.7 if i % 2 else 0.0, "ready": i in (3, 5),
+        }
+        for i in range(8)
+    ]  # fmt: skip
+    verdict = from_start.judge([*dead, {**dead[0], "case": "cover on", "ready": True}], 1)
+    early, late = verdict.tables["readiness"]
+    assert (early["ready"], early["told"], late["ready"], late["told"]) == (0, 4, 2, 4)
+    assert found(verdict, "ready though a sensor is dead") is True
+    assert found(from_start.judge([{**dead[0], "ready": None}], 1), "ready though a sensor is dead") is None

@@ -8,13 +8,13 @@ themselves, when they agree (`readmission`).
 
 from math import inf, nan, sqrt
 
-from uavsim.onboard.airspeed.difference import channel_range
-from uavsim.onboard.airspeed.interface import NoiseModel, reading_variances, within
+from uavsim.onboard.airspeed.interface import NoiseModel, reading_variances
+from uavsim.onboard.airspeed.measured import limits
 from uavsim.onboard.airspeed.ports import Ports
 from uavsim.onboard.airspeed.progress import Progress
 from uavsim.onboard.airspeed.rail import pause
 from uavsim.onboard.airspeed.spikes import JUMPED, Spikes
-from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.repeats import Row
 from uavsim.onboard.stamps import Conversions
 
 # by hand, all three; docs/airspeed.md, "What no reading can do", holds the check
@@ -45,6 +45,8 @@ class Admission:
         Where the filter stands.
     ports : Ports
         The watch over the two ports.
+    warmth : Row
+        How often the thermometer has repeated a number.
 
     Attributes
     ----------
@@ -60,15 +62,13 @@ class Admission:
 
     __slots__ = (
         "_coldest", "_heard", "_pause", "_ports", "_progress", "_static_ends", "_static_within", "_total_ends",
-        "_total_within", "_warmed", "_warmest", "muted", "static", "static_pause", "sudden", "total",
+        "_total_within", "_warmed", "_warmest", "_warmth", "muted", "static", "static_pause", "sudden", "total",
     )  # fmt: skip
 
-    def __init__(self, noise: NoiseModel, longest: float, progress: Progress, ports: Ports) -> None:
-        self._progress, self._ports = progress, ports
-        self._coldest, self._warmest = within(noise.temperature_range, 0.0, LEAST_TEMPERATURE, MOST_TEMPERATURE)
+    def __init__(self, noise: NoiseModel, longest: float, progress: Progress, ports: Ports, warmth: Row) -> None:
+        self._progress, self._ports, self._warmth = progress, ports, warmth
+        self._total_within, self._static_within, (self._coldest, self._warmest) = limits(noise)
         self._warmed = 0.2 * noise.thermometer_recovery
-        self._total_within = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
-        self._static_within = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
         self.sudden = max(SUDDEN, SUDDEN_SD * sqrt(max(reading_variances(noise))))
         self.total, self.static = Spikes(), Spikes()
         self._total_ends, self._static_ends = Conversions(longest), Conversions(longest)
@@ -117,21 +117,22 @@ class Admission:
             if temperature != air.temperature:
                 air.warm(temperature)
             air.measured = True
-            heard[2] = t
+            heard[2] = heard[2] if self._warmth.stuck else t
         else:
             temperature = nan
         air.at(energy.p, energy.s)
         low, high = self._total_within
-        if not low <= channel <= high:
+        if not low < channel < high:
             channel = nan
         low, high = self._static_within
-        if not low <= p_static <= high:
+        if not low < p_static < high:
             p_static = nan
         reach = self.sudden + (STEEP if steady else STROKE) * (t - before)
         total, static = self.total.take(channel, reach), self.static.take(p_static, reach)
         if steady and JUMPED in (total, static):
             self._ports.jumped(t, energy, progress.now, total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
+        self._warmth.add(given[2] if end_static == end_static else nan)
         new_total, new_static = end_total == end_total and total > 0, end_static == end_static and static > 0
         if new_total:
             heard[0] = t
@@ -152,8 +153,11 @@ class Admission:
             if heard < late:
                 kind = "silent" if end != end else "range" if value == value else "invalid"
                 ports.condemn(t, progress.energy, progress.now, channel, kind)
-        warmth = "" if self._heard[2] >= late else "range" if given[2] == given[2] else "invalid"
-        force = "" if progress.gained.newest >= late else "silent"
+        warmth = force = ""
+        if self._heard[2] < late:
+            warmth = "stuck" if self._warmth.stuck else "range" if given[2] == given[2] else "invalid"
+        if progress.gained.newest < late:
+            force = "stuck" if progress.gained.stuck else "silent"
         for i, (channel, kind) in enumerate((("accelerometer", force), ("thermometer", warmth))):
             if bool(kind) != self.muted[i]:
                 self.muted[i] = bool(kind)

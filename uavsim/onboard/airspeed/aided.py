@@ -44,6 +44,7 @@ from uavsim.onboard.airspeed.spikes import JUMPED
 from uavsim.onboard.airspeed.told import Told
 from uavsim.onboard.interface import Estimate, Estimator, Feel, TareWindow
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
+from uavsim.onboard.repeats import force_row
 from uavsim.onboard.stamps import LATEST, Stamps, jump
 
 # s after the recognition in which a push has to show, three strokes of the catapult; after that V is what the pressures
@@ -98,7 +99,9 @@ class AidedFilter(Estimator):
         self._settings, self._noise = settings, noise
         self._waiting = JumpAdaptive(settings, noise, tare_window)
         self._tare_end = -inf if tare_window is None else tare_window[1]
-        self._gained = SpeedGained(noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag)
+        self._gained = SpeedGained(
+            noise.accelerometer_sd, noise.accelerometer_rate, lag=noise.accelerometer_lag, row=force_row(noise)
+        )
         self._believe_offset(noise.accelerometer_offset_sd)
         self._gained.end_at(*noise.accelerometer_range)
         self._rest = RestForce(noise.accelerometer_sd, self._flight_force)
@@ -122,7 +125,9 @@ class AidedFilter(Estimator):
         progress = self._progress = self.progress(
             self._plain, noise, air=air, gained=self._gained, rest=self._rest, onset=self._onset, ports=ports
         )
-        admission = self._admission = Admission(noise, self._longest, progress, ports)
+        admission = self._admission = Admission(
+            noise, self._longest, progress, ports, self._rail.sensors["thermometer"].row
+        )
         errors = self._errors = PortErrors(noise.head, progress.angles, air)
         tests = self._tests = LaunchTests(
             noise,
@@ -143,7 +148,7 @@ class AidedFilter(Estimator):
         )
         self._hand_over = HandOver(
             self.core, noise, settings, self._tare_end,
-            waiting=self._waiting, progress=progress, onset=self._onset, total_age=corrections.total_age,
+            waiting=self._waiting, progress=progress, onset=self._onset,
         )  # fmt: skip
 
     @property
@@ -209,7 +214,8 @@ class AidedFilter(Estimator):
         estimate = self._waiting.step(t, p_total, p_static, temperature, t_total, t_static)
         if estimate is None:
             return None
-        self._hand_over.rows.append((t, p_total, p_static, temperature, t_total, t_static))
+        if self._gated == inf:  # before a launch; in flight they would be kept for none
+            self._hand_over.rows.append((t, p_total, p_static, temperature, t_total, t_static))
         if estimate[6] and (t < self._gated < inf or self._of_rail(estimate[1]) or self._rail.broken(t)):
             return (*estimate[:6], False, *estimate[7:])
         return estimate
@@ -299,10 +305,10 @@ class AidedFilter(Estimator):
             self._begin_aloft(start, t)
         else:
             self._begin_on_rail(start, t, broken)
-        corrections = self._corrections
+        total_age, static_age = self._noise.total_age, self._noise.static_age
         try:
             for row in self._hand_over.rows:
-                if row[4] - corrections.total_age > start or row[5] - corrections.static_age > start:
+                if row[4] - total_age > start or row[5] - static_age > start:
                     self._fly(*row)
         except (ArithmeticError, ValueError):  # as in `step`
             self._fall_back(t, "diverged")
@@ -341,6 +347,7 @@ class AidedFilter(Estimator):
     def _begin_on_rail(self, start: float, t: float, broken: dict[str, str]) -> None:
         """Begin at rest on the rail at an instant, s; what the rail has shown to be dead is flagged at `t`, s."""
         hand_over, tests = self._hand_over, self._tests
+        start = hand_over.still_until(start, t)
         begun = hand_over.on_rail(start)
         self._start(start, begun, t + PATIENCE, inf)
         tests.begin(begun.rest_sd)
@@ -357,7 +364,7 @@ class AidedFilter(Estimator):
         energy, variance = self.energy, self._settings.wind_sd**2
         if "total" in broken or "static" in broken:  # then nothing has been seen of the wind
             self._onset.know()
-            self._progress.wind.forget()
+            self._progress.lose_wind()
             energy.restart(0.0, variance)
         for channel, kind in broken.items():
             if channel == "thermometer":

@@ -60,14 +60,12 @@ class Corrections:
         What is taken off the total channel, Pa.
     fresh : float
         When a total pressure was taken last, s.
-    total_age, static_age : float
-        From a pressure's instant to the end of its conversion, s.
     """
 
     __slots__ = (
         "_acceleration", "_difference", "_differential", "_errors", "_onset", "_ports", "_progress", "_push",
-        "_push_variance", "_scale_variance", "_static_variance", "_sudden", "_tests", "_total_variance", "fresh",
-        "static_age", "tare", "total_age",
+        "_push_variance", "_scale_variance", "_static_age", "_static_variance", "_sudden", "_tests", "_total_age",
+        "_total_variance", "fresh", "tare",
     )  # fmt: skip
 
     def __init__(
@@ -84,8 +82,7 @@ class Corrections:
     ) -> None:
         self._progress, self._ports, self._errors, self._tests = progress, ports, errors, tests
         self._difference, self._differential, self._onset = difference, noise.differential, onset
-        self.total_age = 0.5 * noise.total_window + noise.total_lag
-        self.static_age = 0.5 * noise.static_window + noise.static_lag
+        self._total_age, self._static_age = noise.total_age, noise.static_age
         self._total_variance, self._static_variance = reading_variances(noise)
         self._scale_variance, self._sudden = scale_variance(noise), sudden
         self._acceleration = noise.acceleration
@@ -104,7 +101,7 @@ class Corrections:
         """Take what is new of a reading of the head, its channels; return the normalised innovations squared."""
         nis_total = nis_static = nan
         progress, ports = self._progress, self._ports
-        to, at = t_total - self.total_age, t_static - self.static_age
+        to, at = t_total - self._total_age, t_static - self._static_age
         if (
             new_total
             and new_static
@@ -131,6 +128,8 @@ class Corrections:
         energy, air, dt = progress.energy, progress.air, to - progress.time
         density = air.density
         progress.feel_shock(to)
+        if energy.learns:
+            energy.hold_difference()
         if energy.kk > 0.0:
             self._push_variance = energy.know_push()
         gained, variance = progress.go(to, dt)
@@ -156,7 +155,9 @@ class Corrections:
         )
         ports = self._ports
         if nis_total <= GATE:
-            self.fresh = progress.t
+            self.fresh, ports.gated = progress.t, 0
+        else:
+            ports.gate(energy)
         ports.misses = 0 if nis_static <= GATE else ports.misses + 1
         ports.seen_static = p_static, at, progress.lift
         ports.seen_total = p_total, tared + energy.p if self._differential else tared, nis_total
@@ -214,7 +215,7 @@ class Corrections:
     def _take_total(self, reading: float, end: float) -> float:
         progress, ports = self._progress, self._ports
         energy, air = progress.energy, progress.air
-        behind = progress.time - (end - self.total_age)
+        behind = progress.time - (end - self._total_age)
         if behind > OLDEST:
             return nan
         if self._tests.stroke.open and self._tests.shut(reading):
@@ -240,7 +241,9 @@ class Corrections:
         on_rail = progress.wind.on
         nis = self._measure(tared, variance, pushed, base > 0.0)
         if energy.taken:
-            self.fresh = progress.t
+            self.fresh, ports.gated = progress.t, 0
+        else:
+            ports.gate(energy)
         below = (0.0 if base else energy.p) - tared > NO_SPEED * air.density * energy.v * energy.v + self._sudden
         if not (energy.taken or below) and progress.time < progress.steady_from:  # too early for a fault: it is wrong
             slope = air.density * (energy.v if energy.v > SLOWEST else SLOWEST)

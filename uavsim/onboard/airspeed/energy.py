@@ -13,7 +13,10 @@ from uavsim.onboard.airspeed.energy_model import B, D, EnergyModel, K, P, S, V, 
 
 @dataclass(slots=True)
 class Beside:
-    """A quantity c that stays as it is beside the state: its value, its variance, its covariances with the state."""
+    """A quantity c that stays as it is beside the state: its value, its variance, its covariances with the state.
+
+    `of_other` is the covariance with another such quantity, if there is one; both hold it.
+    """
 
     value: float = 0.0
     variance: float = 0.0
@@ -23,7 +26,11 @@ class Beside:
     of_s: float = 0.0
     of_d: float = 0.0
     of_k: float = 0.0
+    of_other: float = 0.0
 
+
+Others = tuple[tuple[float, Beside], ...]
+"""Quantities beside the state, two at the most, each with the derivative of what is read by it."""
 
 SEVEN_R = 7.0 * GAS_CONSTANT_DRY_AIR  # J/(kg·K): 2·c_p, v²/(7·R·T) = (γ − 1)/2·M²
 
@@ -78,7 +85,7 @@ class EnergyFilter(EnergyModel):
         self._slope_density, self._slope_time = slope_rate**2, slope_time
         self._static_density = static_walk**2
         self._difference_density = difference_walk**2
-        self._relative = 1.0 if relative else 0.0
+        self._relative, self._learns = 1.0 if relative else 0.0, 1.0
         self.b = self.d = self.k = self.innovation = 0.0
         self.taken = True
         self.v, self.s, self.p = speed, rest_force, static
@@ -103,6 +110,20 @@ class EnergyFilter(EnergyModel):
         self.vk = self.bk = self.pk = self.sk = self.dk = 0.0
         return variance
 
+    @property
+    def learns(self) -> bool:
+        """Whether readings correct d."""
+        return self._learns > 0.0
+
+    def hold_difference(self) -> None:
+        """Let d be what it is from here on, and as well known; it keeps its part in what is not known of V (Schmidt).
+
+        In flight δd = −ρV δV can hardly be read: only by a change of V that the force knows. What the filter makes of
+        gusts is false, for its slopes are those of estimates that gusts have moved: with d known to 8 Pa, V drifts away
+        by 3 m/s in a minute of turbulence.
+        """
+        self._learns = 0.0
+
     def read_relative(self, relative: bool) -> None:
         """Be told whether total pressures are read relative to the static one from here on."""
         self._relative = 1.0 if relative else 0.0
@@ -121,43 +142,77 @@ class EnergyFilter(EnergyModel):
         self.vd = x * self.vd + y * beside.of_d
         self.vk = x * self.vk + y * beside.of_k
 
-    def tie_difference(self, covariance: float) -> None:
-        """Know that d goes with the airspeed at the start, by a covariance, Pa·m/s."""
-        self.vd = covariance
+    def resolve_difference(self, change: float, variance: float, others: Others) -> None:
+        """Be told that d is more than it was by a function of quantities beside the state, whose covariances follow.
 
-    def total_of_two(
-        self, above: float, variance: float, pushed: float, slopes: tuple[float, float], beside: Beside
-    ) -> float:
-        """Take a total pressure that depends on v and on a quantity beside the state, which is corrected, too.
+        Parameters
+        ----------
+        change, variance : float
+            The function's value, Pa, and what its curvature adds to the variance of d, Pa².
+        others : tuple
+            The quantities and the function's derivatives by them.
+        """
+        self.d += change
+        of = 0.0
+        for h, c in others:
+            of += h * c.of_d
+            self.vd += h * c.of_v
+            self.bd += h * c.of_b
+            self.pd += h * c.of_p
+            self.sd += h * c.of_s
+            self.dk += h * c.of_k
+        for h, c in others:
+            c.of_d += h * c.variance + sum(g * c.of_other for g, other in others if other is not c)
+        self.dd += variance + of + sum(h * c.of_d for h, c in others)
+
+    def tie_difference(self, covariance: float) -> None:
+        """Know that d goes with the airspeed, by as much more, Pa·m/s."""
+        self.vd += covariance
+
+    def total_beside(self, above: float, variance: float, pushed: float, hv: float, others: Others) -> float:
+        """Take a total pressure that depends on v and on quantities beside the state, which are corrected, too.
 
         Parameters
         ----------
         above : float
             By how much the reading, tared and freed of the known error, is above what the port reads of v and of the
-            quantity at p, Pa.
+            quantities at p, Pa.
         variance, pushed : float
             As of `total`.
-        slopes : tuple of float
-            Derivatives of what the port reads, by v and by the quantity.
-        beside : Beside
+        hv : float
+            Derivative of what the port reads by v.
+        others : tuple
+            The quantities, and those by them.
 
         Returns
         -------
         float
             Normalised innovation squared.
         """
-        hv, hc = slopes
-        c = beside
         hp = 1.0 - self._relative
-        gv = hv * self.vv + hp * self.vp + self.vd + pushed * self.vk + hc * c.of_v
-        gb = hv * self.vb + hp * self.bp + self.bd + pushed * self.bk + hc * c.of_b
-        gp = hv * self.vp + hp * self.pp + self.pd + pushed * self.pk + hc * c.of_p
-        gs = hv * self.vs + hp * self.ps + self.sd + pushed * self.sk + hc * c.of_s
-        gd = hv * self.vd + hp * self.pd + self.dd + pushed * self.dk + hc * c.of_d
-        gk = hv * self.vk + hp * self.pk + self.dk + pushed * self.kk + hc * c.of_k
-        gc = hv * c.of_v + hp * c.of_p + c.of_d + pushed * c.of_k + hc * c.variance
-        spread = hv * gv + hp * gp + gd + pushed * gk + hc * gc + variance
-        return self._correct_two(above - self.d - pushed * self.k, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
+        gv = hv * self.vv + hp * self.vp + self.vd + pushed * self.vk
+        gb = hv * self.vb + hp * self.bp + self.bd + pushed * self.bk
+        gp = hv * self.vp + hp * self.pp + self.pd + pushed * self.pk
+        gs = hv * self.vs + hp * self.ps + self.sd + pushed * self.sk
+        gd = hv * self.vd + hp * self.pd + self.dd + pushed * self.dk
+        gk = hv * self.vk + hp * self.pk + self.dk + pushed * self.kk
+        for h, c in others:
+            gv += h * c.of_v
+            gb += h * c.of_b
+            gp += h * c.of_p
+            gs += h * c.of_s
+            gd += h * c.of_d
+            gk += h * c.of_k
+        spread = hv * gv + hp * gp + gd + pushed * gk + variance
+        of = []
+        for h, c in others:
+            gc = hv * c.of_v + hp * c.of_p + c.of_d + pushed * c.of_k + h * c.variance
+            for g, other in others:
+                if other is not c:
+                    gc += g * c.of_other
+            spread += h * gc
+            of.append((gc, c))
+        return self._correct_beside(above - self.d - pushed * self.k, spread, (gv, gb, gp, gs, gd, gk), of)
 
     def predict_beside(
         self, beside: Beside, dt: float, gained: float, variance: float, density: float, railed: bool
@@ -175,40 +230,57 @@ class EnergyFilter(EnergyModel):
             c.of_s *= 1.0 - dt / self._slope_time
         c.variance += variance
 
-    def static_of_two(self, reading: float, variance: float, ahead: float, slope: float, beside: Beside) -> float:
-        """Take a static pressure as `static`; its derivative by the quantity beside the state is `slope`."""
-        c = beside
-        gv = self.vp + ahead * self.vs + slope * c.of_v
-        gb = self.bp + ahead * self.bs + slope * c.of_b
-        gp = self.pp + ahead * self.ps + slope * c.of_p
-        gs = self.ps + ahead * self.ss + slope * c.of_s
-        gd = self.pd + ahead * self.sd + slope * c.of_d
-        gk = self.pk + ahead * self.sk + slope * c.of_k
-        gc = c.of_p + ahead * c.of_s + slope * c.variance
-        innovation, spread = reading - self.p - ahead * self.s, gp + ahead * gs + slope * gc + variance
-        return self._correct_two(innovation, spread, (gv, gb, gp, gs, gd, gk), gc, beside)
+    def static_beside(self, reading: float, variance: float, ahead: float, others: Others) -> float:
+        """Take a static pressure as `static`, which depends on quantities beside the state, too."""
+        gv = self.vp + ahead * self.vs
+        gb = self.bp + ahead * self.bs
+        gp = self.pp + ahead * self.ps
+        gs = self.ps + ahead * self.ss
+        gd = self.pd + ahead * self.sd
+        gk = self.pk + ahead * self.sk
+        for h, c in others:
+            gv += h * c.of_v
+            gb += h * c.of_b
+            gp += h * c.of_p
+            gs += h * c.of_s
+            gd += h * c.of_d
+            gk += h * c.of_k
+        innovation, spread = reading - self.p - ahead * self.s, gp + ahead * gs + variance
+        of = []
+        for h, c in others:
+            gc = c.of_p + ahead * c.of_s + h * c.variance
+            for g, other in others:
+                if other is not c:
+                    gc += g * c.of_other
+            spread += h * gc
+            of.append((gc, c))
+        return self._correct_beside(innovation, spread, (gv, gb, gp, gs, gd, gk), of)
 
-    def _correct_two(
+    def _correct_beside(
         self,
         innovation: float,
         spread: float,
         g: tuple[float, float, float, float, float, float],
-        gc: float,
-        beside: Beside,
+        of: list[tuple[float, Beside]],
     ) -> float:
-        """Correct state and quantity by an innovation; g and gc are their covariances with it."""
+        """Correct state and quantities by an innovation; g and those of `of` are their covariances with it."""
         nis = self._correct(innovation, spread, *g)
-        if self.taken:
+        if not self.taken:
+            return nis
+        gv, gb, gp, gs, gd, gk = g
+        for gc, c in of:
             gain = gc / spread
-            beside.value += gain * innovation
-            beside.variance -= gain * gc
-            gv, gb, gp, gs, gd, gk = g
-            beside.of_v -= gain * gv
-            beside.of_b -= gain * gb
-            beside.of_p -= gain * gp
-            beside.of_s -= gain * gs
-            beside.of_d -= gain * gd
-            beside.of_k -= gain * gk
+            c.value += gain * innovation
+            c.variance -= gain * gc
+            c.of_v -= gain * gv
+            c.of_b -= gain * gb
+            c.of_p -= gain * gp
+            c.of_s -= gain * gs
+            c.of_d -= gain * gd
+            c.of_k -= gain * gk
+        if len(of) == 2:
+            (one, c), (two, other) = of
+            c.of_other = other.of_other = c.of_other - one * two / spread
         return nis
 
     def shift_speed(self, change: float) -> None:

@@ -192,7 +192,7 @@ class EnergyModel:
     """
 
     __slots__ = (
-        "_bias_density", "_bias_time", "_difference_density", "_relative", "_slope_density", "_slope_time",
+        "_bias_density", "_bias_time", "_difference_density", "_learns", "_relative", "_slope_density", "_slope_time",
         "_static_density", "b", "bb", "bd", "bk", "bp", "bs", "d", "dd", "dk", "innovation", "k", "kk", "p", "pd", "pk",
         "pp", "ps", "s", "sd", "sk", "ss", "taken", "v", "vb", "vd", "vk", "vp", "vs", "vv",
     )  # fmt: skip
@@ -201,6 +201,7 @@ class EnergyModel:
     _slope_density: float
     _static_density: float
     _difference_density: float
+    _learns: float  # 1, or 0 where d stays as it is (`EnergyFilter.hold_difference`)
     _relative: float  # r: 1 where the total pressure is read relative to the static one
     _bias_time: float  # τ_b and τ_s, s
     _slope_time: float
@@ -456,7 +457,7 @@ class EnergyModel:
         kb = gb / spread
         kp = gp / spread
         ks = gs / spread
-        kd = gd / spread
+        kd = self._learns * gd / spread
         kk = gk / spread
         self.v += kv * innovation
         self.b += kb * innovation
@@ -483,7 +484,7 @@ class EnergyModel:
         self.sd -= ks * gd
         self.sk -= ks * gk
         self.dd -= kd * gd
-        self.dk -= kd * gk
+        self.dk -= kk * gd
         self.kk -= kk * gk
         return nis
 
@@ -577,7 +578,7 @@ class EnergyModel:
             kb = gb / spread
             kp = gp / spread
             ks = gs / spread
-            kd = gd / spread
+            kd = self._learns * gd / spread
             v += kv * innovation
             b += kb * innovation
             p += kp * innovation
@@ -623,7 +624,7 @@ class EnergyModel:
                 kb = gb / spread
                 kp = gp / spread
                 ks = gs / spread
-                kd = gd / spread
+                kd = self._learns * gd / spread
                 v += kv * innovation
                 b += kb * innovation
                 p += kp * innovation

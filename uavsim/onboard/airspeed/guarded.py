@@ -69,6 +69,10 @@ class GuardedEstimator(Estimator):
         """Be told of a launch."""
         self._tell("launched", t)
 
+    def airborne(self, t: float) -> None:
+        """Be told of a flight whose launch nobody has seen."""
+        self._tell("airborne", t)
+
     def rearmed(self, t: float) -> None:
         """Be told that it was none."""
         self._tell("rearmed", t)

@@ -19,7 +19,6 @@ from uavsim.onboard.airspeed.interface import NoiseModel, pair_variance, reading
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.onset import Onset
 from uavsim.onboard.airspeed.progress import Progress
-from uavsim.onboard.airspeed.rail_wind import AGO
 from uavsim.onboard.airspeed.rest_wind import Row, rest_difference
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.plausible import LEAST_PRESSURE, MOST_PRESSURE
@@ -33,6 +32,11 @@ THINNEST, THICKEST = 1e3, 2e5  # Pa of the static pressure in flight: that at 31
 # s, and readings of the head, from the start on, by which it is judged whether the aircraft rests on its rail. By hand
 AT_FIRST, FIRST_ROWS = 0.05, 5
 IN_PUSH = 30.0  # m/s², mean force at the start of a replay that is a push: three times what any rest has. By hand
+# m/s that the force may have given to an aircraft at rest: 2 ms of a catapult. And standard deviations of its noise
+# beside it. By hand; the last reading but one before is the last at rest
+STILL, STILL_SD = 0.15, 4.0
+# s for which the pair is read on the rail, at least and at the most. By hand: some readings; the stretch that is kept
+SHORTEST, LONGEST = 0.05, 0.5
 STORM = 25.0  # m/s, a wind beyond which nobody launches: 12 Beaufort are 33
 UNLIKELY = 5.0  # standard deviations of the pair's difference beside it
 
@@ -77,8 +81,6 @@ class HandOver:
         Where the filter will stand.
     onset : Onset
         Of the airspeed by pressures.
-    total_age : float
-        From a total pressure's instant to the end of its conversion, s.
 
     Attributes
     ----------
@@ -101,11 +103,10 @@ class HandOver:
         waiting: JumpAdaptive,
         progress: Progress,
         onset: Onset,
-        total_age: float,
     ) -> None:
         self._core, self._wind_sd, self._tare_end = core, settings.wind_sd, tare_end
         self.believe(noise, settings)
-        self._waiting, self._progress, self._onset, self._total_age = waiting, progress, onset, total_age
+        self._waiting, self._progress, self._onset, self._total_age = waiting, progress, onset, noise.total_age
         self._pair_variance, self._row_variance = pair_variance(noise), sum(reading_variances(noise))
         self._wind_known = progress.wind.declared or tare_end == -inf
         self.rows: deque[Row] = deque(maxlen=ROWS)
@@ -128,9 +129,8 @@ class HandOver:
             tare_variance = self._noise.difference_sd**2  # nobody has tared the pair
         rest = progress.rest.result(start)
         at, density = (static, static / progress.air.gas) if known else (airdata.STANDARD_PRESSURE, 0.0)
-        tied = 0.0
         if self._wind_known:
-            along, along_sd, off, tare_variance, tied = self._look_at_wind(start, at, density, (tare, tare_variance))
+            along, along_sd, off, tare_variance = self._look_at_wind(start, at, (tare, tare_variance))
         else:
             progress.wind.forget()
             off, along_sd = tare, self._onset.look(self._at_rest(start), (tare, tare_variance), density)
@@ -141,7 +141,6 @@ class HandOver:
             static=(at, AROUND if known else ANYWHERE),
             difference_sd=sqrt(tare_variance),
         )
-        energy.tie_difference(tied)
         return Beginning(energy, off, (along, along_sd), rest[1])
 
     def _at_rest(self, end: float, longest: float = inf) -> tuple[float, float] | None:
@@ -150,26 +149,57 @@ class HandOver:
         return rest_difference(self.rows, start=begun, end=end, each=self._pair_variance)
 
     def _look_at_wind(
-        self, start: float, static: float, density: float, tare: tuple[float, float]
-    ) -> tuple[float, float, float, float, float]:
-        """Return u₀, its standard deviation, the tare, the variance of d and their covariance; see `rail_wind`."""
+        self, start: float, static: float, tare: tuple[float, float]
+    ) -> tuple[float, float, float, float]:
+        """Return u₀, its standard deviation, the tare, and the variance of d; see `rail_wind`."""
         progress, noise = self._progress, self._noise
         air, wind = progress.air, progress.wind
         self._onset.know()
         tared = noise.covered and self._tare_end > -inf
         # A gust of the tare is over when the aircraft is launched. What is read last has the wind in it that the filter
         # begins in, so that the errors of both go together
-        seen = self._at_rest(start, 2.0 * AGO)
+        wandering = air.gust * max(wind.speed_declared, SLOWEST)
+        longest = self._longest(wandering, static / air.gas * max(wind.speed_declared, SLOWEST))
+        seen = self._at_rest(start, longest)
         if tared and seen is not None:
             seen = seen[0] - tare[0], seen[1] + tare[1]
         elif not tared and self._tare_end > -inf and seen is None:
             seen = self._waiting.tare()
             seen = seen if seen[1] > 0.0 else None
-        gusts = air.gust * max(wind.speed_declared, SLOWEST) * AGO
-        along, sd, off, variance, tied = wind.begin(seen, tared=tared, air=(static, air.heat, gusts), density=density)
+        gusts = wandering * 0.5 * longest
+        along, sd, off, variance = wind.begin(seen, tared=tared, air=(static, air.heat, gusts))
         if tared or seen is None:
-            return along, sd, *tare, tied
-        return along, sd, off, variance + noise.walk**2 * AGO, tied
+            return along, sd, *tare
+        return along, sd, off, variance + noise.walk**2 * 0.5 * longest
+
+    def _longest(self, wandering: float, slope: float) -> float:
+        """Return for how long the pair is read at rest, s: where its noise and the wind's wandering make the least.
+
+        The mean over W has the variance σ²/(r W), and the wind is then off by W/2 of its wandering, m²/s³, each worth
+        ρ w, Pa/(m/s).
+        """
+        noise, gusts = self._pair_variance / self._noise.head_rate, slope * slope * wandering
+        best = sqrt(2.0 * noise / gusts) if gusts > 0.0 else inf
+        return min(max(best, SHORTEST), LONGEST)
+
+    def still_until(self, start: float, t: float) -> float:
+        """Return until when the aircraft has been at rest between two times, s: the push may have begun after that.
+
+        Only where the wind is looked at, for which each tenth of a second counts in gusts.
+        """
+        if not self._wind_known:
+            return start
+        gained, still = self._progress.gained, [start]
+        u, w = gained.at(start)
+        mean = self._progress.rest.result(start)[0]
+        for row in self.rows:
+            at = row[4] - self._total_age
+            if start < at < t:
+                now, spread = gained.at(at)
+                if now - u - mean * (at - start) > STILL + STILL_SD * sqrt(max(spread - w, 0.0)):
+                    return still[-2] if len(still) > 1 else start
+                still.append(at)
+        return start
 
     # -- in flight ---------------------------------------------------------------------------------------------------
 

@@ -63,6 +63,9 @@ class NoiseModel:
         By which they are rounded, Pa.
     temperature_range : tuple of float
         K: a temperature beyond it is no measurement.
+    temperature_white_sd, temperature_step, temperature_lag : float
+        Noise of one reading of the thermometer, rounding included, K; by which it is rounded, K; the time constant of
+        its digital filter, s.
     accelerometer_range : tuple of float
         m/s²: a specific force at or beyond an end has been clipped.
     accelerometer_step : float
@@ -122,6 +125,9 @@ class NoiseModel:
     total_step: Annotated[float, Ge(0.0)] = 0.0
     static_step: Annotated[float, Ge(0.0)] = 0.0
     temperature_range: tuple[float, float] = (LEAST_TEMPERATURE, MOST_TEMPERATURE)
+    temperature_white_sd: Annotated[float, Ge(0.0)] = 0.0
+    temperature_step: Annotated[float, Ge(0.0)] = 0.0
+    temperature_lag: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     accelerometer_range: tuple[float, float] = ANY
     accelerometer_step: Annotated[float, Ge(0.0)] = 0.0
     accelerometer_white_sd: Annotated[float, Ge(0.0)] = 0.0
@@ -142,20 +148,15 @@ class NoiseModel:
     differential: bool = False
     difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
 
+    @property
+    def total_age(self) -> float:
+        """From the instant of which a reading of the total channel is to the end of its conversion, s."""
+        return 0.5 * self.total_window + self.total_lag
 
-def within(ends: tuple[float, float], step: float, least: float, most: float) -> tuple[float, float]:
-    """Return between which readings something has been measured: within the part's ends, and plausible.
-
-    Parameters
-    ----------
-    ends : tuple of float
-        Of the part's range; a reading there, or less than half a step away, has been clipped.
-    step : float
-        By which readings are rounded.
-    least, most : float
-        What is plausible at all (`uavsim.onboard.plausible`).
-    """
-    return max(least, ends[0] + 0.5 * step), min(most, ends[1] - 0.5 * step)
+    @property
+    def static_age(self) -> float:
+        """The same of the static pressure, s."""
+        return 0.5 * self.static_window + self.static_lag
 
 
 def reading_variances(noise: NoiseModel) -> tuple[float, float]:

@@ -66,7 +66,7 @@ class LaunchTests:
         self._acceleration, self._acceleration_sd = noise.acceleration, noise.acceleration_sd
         self._scale_variance, self._wind_variance = scale_variance(noise), wind_sd**2
         self._total_variance = reading_variances(noise)[0]
-        self.stroke, self.climb = StrokeTest(), FirstClimb()
+        self.stroke, self.climb = StrokeTest(difference.differential), FirstClimb()
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
         self._rest_sd = 0.0
 
@@ -129,7 +129,7 @@ class LaunchTests:
     def _not_risen(self, kind: str) -> None:
         """Flag the total port in the stroke. What it has told of the wind is void, and V is what the force gave."""
         progress = self._progress
-        progress.wind.forget()
+        progress.lose_wind()
         begun, _, w = self._base
         since, gained = progress.time - begun, self.speed_gained()
         rest = self._rest_sd * since

@@ -17,6 +17,7 @@ SAME = 4.0
 # m/s². In flight the force less that at rest is below it, and the mean since the last reading serves. Above it, in the
 # stroke, the mean over the conversion itself is taken. By hand
 GENTLE = 10.0
+SETTLED = 32  # readings, after which a mean is left as it is: a sixth of one reading's noise is no push. By hand
 
 
 class MembranePush:
@@ -54,8 +55,9 @@ class MembranePush:
             at = self._gained.at
             force = (at(end)[0] - at(end - self._window)[0]) / self._window - self._rest.mean
         if abs(force - self.held) < self._same:
-            self._count += 1
-            self.held += (force - self.held) / self._count
+            if self._count < SETTLED:
+                self._count += 1
+                self.held += (force - self.held) / self._count
         else:
             self.held, self._count = force, 1
         return self.held

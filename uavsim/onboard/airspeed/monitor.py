@@ -6,7 +6,8 @@ port are as believed:
     frozen  the port holds its pressure although accelerometer, climb or gusts must move it (`frozen`): blocked, iced
     stuck   the same number again and again, which noise does not allow (`readmission`): the sensor
     drift   S₊ = max(0, S₊ + ν − κ) or S₋ = max(0, S₋ − ν − κ) is above h (Page 1954): the port says ever more, or ever
-            less, than the accelerometer allows. A leak, a torn tube
+            less, than the accelerometer allows. A leak, a torn tube. Where the filter has been narrower than its
+            innovations for long, ν is taken by their mean square
     slide   b, what f_x seems to be off by, is beyond five of its standard deviations. Where a port drifts so slowly
             that each innovation is small, the filter believes in an acceleration that is not there. Told as drift
 
@@ -33,6 +34,10 @@ CERTAIN = 3.0  # times the level, from which on it is blamed even if the reading
 # to 41 (6 m/s in 2.5 s, in flight). h leaves three times that. By hand; a port that is far off passes it within half a
 # second at 100 Hz
 DRIFT, LEVEL = 0.5, 120.0
+# readings over which the mean of ν², clipped as ν is, tells how narrow the filter is. By hand: ten seconds at 100 Hz,
+# so that a leak, which is seen in half a second, is hardly in it. Without it turbulence at 140 m/s, where ν² is 15
+# for seconds, was a drift twice in 58 flights
+USUAL = 1000
 CLIP = 3.0  # standard deviations at which ν is clipped, so that spikes, which are gated, count little. By hand
 # b² over its variance, five standard deviations: beyond it b is no acceleration. Chance is there once in two million
 SLIDE = 25.0
@@ -64,13 +69,13 @@ class PortMonitor:
         The comparison of a live port with one that is shut.
     """
 
-    __slots__ = ("_down", "_gusts", "_level", "_offset_sd", "_rate", "_up", "_variance", "back", "frozen")
+    __slots__ = ("_down", "_gusts", "_level", "_offset_sd", "_rate", "_up", "_usual", "_variance", "back", "frozen")
 
     def __init__(
         self, bias_rate: float, variance: float, walk: float, row: float, gusts: bool, offset_sd: float = 0.0
     ) -> None:
         self._variance, self._rate, self._gusts, self._offset_sd = variance, bias_rate, gusts, offset_sd
-        self._level = FROZEN if gusts else CALM
+        self._level, self._usual = FROZEN if gusts else CALM, 1.0
         self.back = Readmission(variance, walk, row)
         self.restart()
 
@@ -102,7 +107,9 @@ class PortMonitor:
             What seems to be wrong: "frozen", "stuck", "drift", or "unfit": the readings fit no live port, and are no
             constant either. "" for nothing.
         """
-        nu = CLIP if nis > CLIP * CLIP else sqrt(nis)
+        size = nis if nis < CLIP * CLIP else CLIP * CLIP
+        usual = self._usual = self._usual + (size - self._usual) / USUAL
+        nu = sqrt(size / usual if usual > 1.0 else size)
         if innovation < 0.0:
             nu = -nu
         up, down = self._up + nu - DRIFT, self._down - nu - DRIFT

@@ -37,14 +37,15 @@ from collections.abc import Callable
 from math import inf, isnan, nan, sqrt
 
 from uavsim import airdata
-from uavsim.onboard.airspeed.difference import Difference, channel_range
-from uavsim.onboard.airspeed.interface import NoiseModel, within
+from uavsim.onboard.airspeed.difference import Difference
+from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.kinds import one_of_ours
+from uavsim.onboard.airspeed.measured import limits
 from uavsim.onboard.airspeed.random_walk import Channel, RandomWalk, process_noise
 from uavsim.onboard.airspeed.settings import EstimatorSettings
 from uavsim.onboard.airspeed.tare import Tare
 from uavsim.onboard.interface import Estimate, Estimator
-from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
+from uavsim.onboard.plausible import FASTEST, LEAST_PRESSURE, MOST_PRESSURE
 from uavsim.onboard.stamps import Conversions, Stamps, jump
 
 FLOOR = 0.8  # V*; below it the linear law would exceed the rms error of the clipped root
@@ -79,6 +80,7 @@ class PaperFilter(Estimator):
 
     __slots__ = (
         "_clipped",
+        "_coldest",
         "_compressible",
         "_cover",
         "_difference",
@@ -94,7 +96,7 @@ class PaperFilter(Estimator):
         "_star",
         "_static",
         "_static_ends",
-        "_static_ends_at",
+        "_static_within",
         "_t",
         "_tare",
         "_tare_variance",
@@ -103,7 +105,8 @@ class PaperFilter(Estimator):
         "_temperature_share",
         "_total",
         "_total_ends",
-        "_total_ends_at",
+        "_total_within",
+        "_warmest",
         "_wind_sd",
         "lightness",
     )
@@ -129,8 +132,7 @@ class PaperFilter(Estimator):
         self._temperature_share = 0.5 * noise.temperature_sd
         self._wind_sd = settings.wind_sd
         self._fastest = FASTEST if settings.fastest is None else settings.fastest
-        self._total_ends_at = within(channel_range(noise), noise.total_step, LEAST_PRESSURE, MOST_PRESSURE)
-        self._static_ends_at = within(noise.static_range, noise.static_step, LEAST_PRESSURE, MOST_PRESSURE)
+        self._total_within, self._static_within, (self._coldest, self._warmest) = limits(noise)
         self._clipped = False
         self._position = noise.head.error / (1.0 - noise.head.error)
         self._law_ends = TRANSONIC**2 * airdata.GAMMA * airdata.GAS_CONSTANT_DRY_AIR * scale_squared
@@ -181,16 +183,16 @@ class PaperFilter(Estimator):
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         new_total, new_static = end_total == end_total, end_static == end_static  # not NaN
         reading = self._difference.read(p_total, p_static)
-        reading, clipped = _measured(reading, *self._total_ends_at)
+        reading, clipped = _measured(reading, *self._total_within)
         if reading != reading:
             p_total = nan
-        p_static, clipped_too = _measured(p_static, *self._static_ends_at)
+        p_static, clipped_too = _measured(p_static, *self._static_within)
         self._clipped = clipped or clipped_too
         if new_total:
             self._total.add(reading)
         if new_static:
             self._static.add(p_static)
-        if LEAST_TEMPERATURE <= temperature <= MOST_TEMPERATURE:
+        if self._coldest <= temperature <= self._warmest:
             self._temperature = temperature
         else:
             temperature = nan
@@ -293,6 +295,6 @@ class PaperFilter(Estimator):
 
 def _measured(pressure: float, low: float, high: float) -> tuple[float, bool]:
     """Return a pressure, NaN where it is none, and whether it has been clipped at an end of the range, Pa."""
-    if low <= pressure <= high:
+    if low < pressure < high:
         return pressure, False
     return nan, LEAST_PRESSURE <= pressure <= MOST_PRESSURE

@@ -29,6 +29,10 @@ MOST_NEWS = 64  # events that wait for somebody to take them out; then the oldes
 # static pressures in a row beyond the gate: no longer spikes, but a port or a filter that is wrong. By hand, as
 # `stamps.AGREED`; docs/airspeed.md, "What no reading can do", holds the check
 PERSISTENT = 5
+# total pressures in a row beyond the gate, after which it may be a gust that has come at once, and V may be off by one.
+# Without it the gate shut out a live port for as long as it took the filter's own gusts to reach it, 0.7 s, in which V
+# was 2 m/s off and the port taken for one that drifts. By hand
+SHUT_OUT = 5
 
 News = tuple[float, str, str, str]
 """Time, s, event, channel and kind."""
@@ -57,8 +61,8 @@ class Ports:
         (`difference`), the pressure tared, Pa, and its NIS.
     seen_static : tuple or None
         A static pressure so: Pa, its instant, s, and the mean of −f_z since the one before, m/s².
-    misses : int
-        How many static pressures in a row were beyond the gate.
+    misses, gated : int
+        How many static and total pressures in a row were beyond the gate.
     between : float
         While nobody can tell whether the flagged total port or the accelerometer is wrong: the square of what lies
         between the two airspeeds, m²/s², which is in the bar; else 0.
@@ -76,6 +80,7 @@ class Ports:
         "_static_variance",
         "_total_variance",
         "between",
+        "gated",
         "misses",
         "news",
         "raw_static",
@@ -109,7 +114,7 @@ class Ports:
         self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white, row_variance)
         gusts = self._aided.gust_sd > self._aided.gust_floor
         self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset, gusts)
-        self._lift, self.misses, self.torn, self.between = GRAVITY, 0, False, 0.0
+        self._lift, self.misses, self.gated, self.torn, self.between = GRAVITY, 0, 0, False, 0.0
         self.raw_static = nan
         self.forget_seen()
 
@@ -132,6 +137,12 @@ class Ports:
             if watch.faulty:
                 self.tell(t, "airspeed_recovered", channel)
 
+    def gate(self, energy: EnergyFilter) -> None:
+        """Be told that a total pressure was beyond the gate: where that lasts, V may be off by a gust."""
+        self.gated += 1
+        if self.gated % SHUT_OUT == 0:
+            energy.widen_speed(self._aided.gust_sd**2)
+
     # -- blame ---------------------------------------------------------------------------------------------------------
 
     def judge(self, t: float, energy: EnergyFilter, time: float, gained: float) -> None:
@@ -144,7 +155,7 @@ class Ports:
             self.seen_static = None
             if lift == lift:
                 self._lift = lift
-            kind = self.static.take(at, reading, lift, self._air.density, self.raw_static)
+            kind = self.static.take(at, reading, lift, (self._air.density, energy.v), self.raw_static)
             if kind or self.misses >= PERSISTENT:
                 self._flag_static(t, energy, kind or "jump")
         if self.seen_total is not None:

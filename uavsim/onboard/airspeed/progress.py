@@ -168,8 +168,13 @@ class Progress:
 
     def leave_rail(self) -> None:
         """Be told that the push is over: from here on the filter's airspeed is along the path."""
-        self.wind.leave(self.energy)
+        self.wind.leave(self.energy, self.air.heat)
+        self.energy.hold_difference()
         self.angles.leave(self.time, self.wind.side)
+
+    def lose_wind(self) -> None:
+        """Be told that what the total pressure has told of the wind on the rail is void."""
+        self.wind.drop(self.energy, self.air.heat)
 
     def unfold(self, t: float) -> None:
         """Be told that the wings are commanded out at `t`, s."""

@@ -11,11 +11,11 @@ live one does not move either. That is for the stroke (`stroke`).
 
 from math import hypot, inf, sqrt
 
-from uavsim.onboard.airspeed.difference import ZERO, channel_range
+from uavsim.onboard.airspeed.difference import ZERO
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.measured import limits
 from uavsim.onboard.life import WORDS, SensorLife
-from uavsim.onboard.plausible import LEAST_PRESSURE, LEAST_TEMPERATURE, MOST_PRESSURE, MOST_TEMPERATURE
-from uavsim.onboard.repeats import alike, longest_row
+from uavsim.onboard.repeats import alike, longest_row, warmth_row
 from uavsim.onboard.stamps import JUMP
 
 # s without a reading, after which a sensor is silent. Readings that are lost by chance, up to 7 in 10 at 100 Hz, make
@@ -26,16 +26,6 @@ SETTLED = 1.0  # s of readings before anything is said. By hand
 FAR = 4.0  # standard deviations: one healthy pair in 16 000
 STORM = 800.0  # Pa: ½ρw² of 36 m/s, which an open head may see at rest
 LEAST_OFFSET = 30.0  # Pa, below which no difference is told: 7 m/s at rest, which the tare takes off. By hand
-
-
-def limits(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
-    """Return between which values a total channel, a static pressure, Pa, and a temperature, K, is a measurement."""
-    (a, b), (c, d), (e, f) = channel_range(noise), noise.static_range, noise.temperature_range
-    return (
-        (max(a, LEAST_PRESSURE), min(b, MOST_PRESSURE)),
-        (max(c, LEAST_PRESSURE), min(d, MOST_PRESSURE)),
-        (max(e, LEAST_TEMPERATURE), min(f, MOST_TEMPERATURE)),
-    )
 
 
 def rows_allowed(noise: NoiseModel) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -71,7 +61,7 @@ class RailCheck:
         self.sensors = {
             "total": SensorLife(total, silent, total_row),
             "static": SensorLife(static, silent, static_row),
-            "thermometer": SensorLife(warmth, silent),
+            "thermometer": SensorLife(warmth, silent, warmth_row(noise)),
         }
         self.forget()
 
@@ -95,7 +85,7 @@ class RailCheck:
         new_static = not self._static_end - JUMP < t_static <= self._static_end
         total.add(t, p_total, new_total)
         static.add(t, p_static, new_static)
-        warmth.add(t, temperature, temperature == temperature or new_static)
+        warmth.add(t, temperature, temperature == temperature or new_static, counts=new_static)
         self._total_end = t_total if new_total else self._total_end
         self._static_end = t_static if new_static else self._static_end
         difference = p_total - (ZERO if self._noise.differential else p_static)

@@ -6,7 +6,7 @@ u is summed by the trapezoidal rule. w is the variance that the white noise of t
 each, has brought into u. It grows with time alone.
 
 Where readings are missing, for five periods and more, and beyond the newest reading, u goes on with the mean of the
-readings beside. w then grows as by an unknown acceleration of 5 m/s² standard deviation that lasts for all of the gap.
+readings beside. w then grows as by unknown accelerations of 5 m/s² standard deviation that last for 2 s each.
 
 A force at the end of the accelerometer's range has been clipped: it is at least so large, and nobody knows how much
 larger. It is summed as it is read, and w grows as by an unknown acceleration of a fifth of the range that lasts as long
@@ -32,7 +32,9 @@ GAP = 5.0  # periods without a reading, from which on it is a gap; fewer are jit
 # of a force of flight. By hand
 NOISY = 10.0
 CLIPPED = 0.2  # share of the range, by which a force may be beyond it (standard deviation). By hand
-GAP_SD = 5.0  # m/s², what an acceleration that nobody has read may be: that of a strong pull-up in flight. By hand
+# m/s², what an acceleration that nobody has read may be, and s, for which it lasts: that of a strong pull-up in flight.
+# By hand
+GAP_SD, LASTS = 5.0, 2.0
 
 
 class SpeedGained:
@@ -48,6 +50,9 @@ class SpeedGained:
         How many are kept.
     lag : float
         Age of a reading at its time stamp, s.
+    row : float
+        How often a live accelerometer may repeat a number (`uavsim.onboard.repeats`). Beyond that its readings are
+        missing ones until another comes.
 
     Attributes
     ----------
@@ -55,15 +60,18 @@ class SpeedGained:
         Time stamp of the last reading taken, s; -inf before.
     steps : int
         How many steps the clock has taken.
+    stuck : bool
+        Whether it repeats a number for too long.
     """
 
     __slots__ = (
         "_beyond", "_clipped", "_f", "_first", "_gap", "_gaps", "_head", "_high", "_lag", "_lift", "_lifts", "_low",
-        "_most", "_most_lift", "_old", "_rate", "_shake", "_size", "_stamps", "_sum", "_t", "_u", "_white", "newest",
-        "steps",
+        "_most", "_most_lift", "_old", "_rate", "_row", "_same", "_shake", "_size", "_stamps", "_sum", "_t", "_u",
+        "_white", "newest", "steps", "stuck",
     )  # fmt: skip
 
-    def __init__(self, sd: float, rate: float, size: int = SIZE, lag: float = 0.0) -> None:
+    def __init__(self, sd: float, rate: float, size: int = SIZE, lag: float = 0.0, row: float = inf) -> None:
+        self._row, self._same, self.stuck = row, 0, False
         self._rate, self._size, self._lag = rate, size, lag
         self._gap = GAP / rate
         self._shake, self._most, self._most_lift = NOISY * sd, MOST_FORCE, MOST_FORCE
@@ -85,6 +93,13 @@ class SpeedGained:
 
     def add(self, t: float, fx: float, _fy: float = 0.0, fz: float = 0.0) -> None:
         """Take a reading; one that is NaN or implausible, or left out for its time stamp, is passed over."""
+        if fx == self._f:
+            self._same += 1
+            if self._same >= self._row and self._low < fx < self._high:
+                self.stuck = True
+                return
+        elif self._same:
+            self._same, self.stuck = 0, False
         elapsed = t - self.newest
         if not (0.0 < elapsed <= self._gap and -self._most < fx < self._most):
             if not (-self._most < fx < self._most and self._stamps.admit(t, self.newest)):
@@ -118,7 +133,7 @@ class SpeedGained:
         if 0.0 < elapsed <= self._stamps.longest:
             if len(gaps) == GAPS:
                 self._old += gaps[0][2]
-            gaps.append((newest, t, (GAP_SD * elapsed) ** 2))
+            gaps.append((newest, t, _unread(elapsed)))
             return elapsed
         if newest > -inf:
             self.steps += 1
@@ -155,7 +170,7 @@ class SpeedGained:
                 return self._sum + self._f * beyond, self._variance(t)
             if beyond == inf:
                 return 0.0, 0.0
-            return self._sum + self._f * self._gap, self._variance(self.newest) + (GAP_SD * beyond) ** 2
+            return self._sum + self._f * self._gap, self._variance(self.newest) + _unread(beyond)
         times, head = self._t, self._head
         last = self._size - 1
         back = int(-beyond * self._rate)  # a guess, right if no reading is missing
@@ -181,3 +196,8 @@ class SpeedGained:
             if t > begin:
                 variance += unread if t >= end else unread * (t - begin) / (end - begin)
         return variance
+
+
+def _unread(time: float) -> float:
+    """Variance of the speed, m²/s², after a time, s, in which no acceleration has been read."""
+    return GAP_SD * GAP_SD * (time * time if time < LASTS else LASTS * (2.0 * time - LASTS))

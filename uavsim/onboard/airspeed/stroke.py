@@ -9,7 +9,8 @@ A covered, shut or dead port has not risen at all. Once r is `SURE` standard dev
 of `AGREED` readings in a row has risen by less than a quarter of it, the port is none. Of readings of a live port not
 one is that low (11 standard deviations), of a shut one all are. Tubes that have been swapped let the total pressure
 stand still and the static one rise: then both are named. A differential sensor then reads the same with the other sign.
-A pressure that has risen by half of r lives, and the test is over.
+Of an absolute one a fall says nothing of the static port. A pressure that has risen by half of r lives, and the test is
+over.
 """
 
 from collections.abc import Iterable
@@ -27,17 +28,24 @@ DEVIATIONS, MOST_WIND = 3.0, 9.0  # of the wind; m/s, of what is not known, or n
 class StrokeTest:
     """One launch.
 
+    Parameters
+    ----------
+    differential : bool
+        Whether the total channel is that of a differential sensor (`difference`).
+
     Attributes
     ----------
     open : bool
         Whether it is still going on.
     """
 
-    __slots__ = ("_dead", "_density", "_left", "_lives", "_static_rest", "_total_rest", "_variance", "_wind", "open")
+    __slots__ = (
+        "_dead", "_density", "_differential", "_lives", "_static_rest", "_total_rest", "_variance", "_wind", "open",
+    )  # fmt: skip
 
-    def __init__(self) -> None:
-        self.open = False
-        self._lives = self._dead = self._left = 0
+    def __init__(self, differential: bool = False) -> None:
+        self.open, self._differential = False, differential
+        self._lives = self._dead = 0
         self._total_rest = self._static_rest = self._variance = self._wind = self._density = 0.0
 
     def begin(
@@ -111,7 +119,8 @@ class StrokeTest:
         if self._dead < AGREED:
             return ""
         self.open = False
-        swapped = static - self._static_rest > LIVE * rise or risen < -LIVE * rise
+        other = -risen if self._differential else static - self._static_rest
+        swapped = other > LIVE * rise
         return "swapped" if swapped else "frozen"
 
 

@@ -93,20 +93,21 @@ class Told:
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
         variance += ports.between
-        share = self._temperature_share * speed / air.temperature
+        warm = self._temperature_share * speed / air.temperature
+        square = warm * warm
         if self._static_share > 0.0:
             dense = self._static_share * speed / static
-            share = sqrt(share * share + dense * dense)
+            square += dense * dense
         if self._errors.any:
             position = self._errors.speed_share * speed
             if wind.on and speed > SLOWEST:
                 position = sqrt(wind.unknown(energy.v, static, air.heat)) / (air.density * speed)
-            share = sqrt(share * share + position * position)
+            square += position * position
         if self._warmed_share > 0.0:
             warmed = self._warmed_share * speed * speed / air.heat * speed
-            share = sqrt(share * share + warmed * warmed)
+            square += warmed * warmed
         scale = self._scale_share * speed
-        sd = sqrt((0.0 if variance < 0.0 else variance) + share * share + scale * scale)
+        sd = sqrt((0.0 if variance < 0.0 else variance) + square + scale * scale)
         total = isentropic(speed, static, air.heat)
         valid = (
             VALID * sd <= speed <= self._fastest

@@ -61,6 +61,9 @@ RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
 TURNS = (
     2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
 )
+# m/s², of the pull beyond `lift.STRAIGHT`, from which on flight is no longer straight for the test of a shut port: a
+# turn at 36°. Gusts of 1 m/s stay below as a rule. By hand
+BENT = 1.5
 # 1/m·m/s², of x = n²/V²: a c that is 5 m off is 0.4 m/s² then, 4 m/s in 10 s. A turn at 40° and 32 m/s has it. By hand;
 # the scenario `manoeuvres` holds the check
 UNTURNED = 0.08
@@ -83,6 +86,10 @@ GUSTLESS = ("frozen", "drift", "leak")
 # s from the last instant at which a live port was the better explanation to the flag. Beyond it an accelerometer that
 # drifts explains a total pressure that stands still in still air as well. By hand
 SLOWLY = 1.0
+
+# Pa/s, of the total pressure before that: where it had moved no faster, only the force has changed, and nothing but an
+# accelerometer that drifts may have been the reason. A climb of 2 m/s makes 24. By hand
+MOVES = 15.0
 
 # -- the static port's test, nats (`climb`) ----------------------------------------------------------------------------
 
@@ -132,8 +139,8 @@ class TotalWatch:
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
         "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
-        "_silent", "_smooth", "_sound", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering", "coasts",
-        "faulty", "port", "undecided",
+        "_silent", "_smooth", "_sound", "_static", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering",
+        "coasts", "faulty", "port", "undecided",
     )  # fmt: skip
 
     def __init__(
@@ -160,7 +167,7 @@ class TotalWatch:
         self._t, self._u, self._last, self._lost = -inf, 0.0, 0.0, 0.0
         self._trusted = self._sound = NOTHING  # when a live port was the better explanation, and when no leak was near
         self._before: tuple[Kept, ...] = (NOTHING,)
-        self._near, self._taught, self._turn = 0, 0.0, 0.0
+        self._near, self._taught, self._turn, self._static = 0, 0.0, 0.0, 0.0
         self._pull, self._gust_variance = Pull(), aided.gust_sd**2
         self._smooth, self._rough = SmoothTest(variance * apart(alike)), NOTHING
         self._p = self._bias = 0.0  # while flagged: what coasting goes by
@@ -195,7 +202,7 @@ class TotalWatch:
             port.restart()
             dt, self._u, self._trusted = 0.0, gained, NOTHING
             self._before, self._sound, self._last = (NOTHING,), NOTHING, v
-            self._near, self._taught = 0, 0.0
+            self._near, self._taught, self._static = 0, 0.0, energy.p
             self._wandering.forget()
         test = port.frozen
         spread = (air.gust if self._declared else self._still + air.shear) * v
@@ -209,7 +216,13 @@ class TotalWatch:
                 self._sound = (*self._before[0][:5], self._lost, LOST_SD * LOST_SD)
         change, turn = gained - self._u, lift * lift / (v * v if v > LEAST_FLIGHT else LEAST_FLIGHT * LEAST_FLIGHT)
         gust = spread * dt + self._pull.add(lift, dt)
-        healthy = test.add(reading, energy.p, energy.pp, change, dt, air.density * v, gust, turn) == 0.0
+        # of compressible flow, to the order of M²: ∂p_t/∂V = ρV (1 + M²/2), and ṗ_t has 2 + 1.2 M² of ṗ
+        mach2 = 5.0 * v * v / air.heat
+        slope = air.density * v * (1.0 + 0.5 * mach2)
+        felt = change + 1.2 * mach2 * (energy.p - self._static) / slope
+        self._static = energy.p
+        straight = self._pull.size < BENT
+        healthy = test.add(reading, energy.p, energy.pp, felt, dt, slope, gust, turn, straight) == 0.0
         if healthy or self._trusted is NOTHING:
             self._trusted = t, gained, v, energy.vv, energy.p, test.lost, test.lost_variance
         self._t, self._u = t, gained
@@ -300,7 +313,8 @@ class TotalWatch:
             return
         test = self.port.frozen
         trusted, (t, gained) = self._trusted, now
-        self.undecided = kind == "frozen" and not self._declared and t - trusted[0] > SLOWLY
+        slowly = t - trusted[0] > SLOWLY or self._was_still(trusted, density)
+        self.undecided = kind == "frozen" and not self._declared and slowly
         if kind != "frozen" and kind not in UNTAKEN:  # it had been wrong for a while before the flag
             before = self._before[0]
             if kind == "leak":
@@ -328,6 +342,13 @@ class TotalWatch:
             vv += self._gust_variance
         energy.coast_from(v, vv, self._bias, bb, since)
         self._p = energy.p
+
+    def _was_still(self, trusted: Kept, density: float) -> bool:
+        """Whether the total pressure hardly moved before an instant: that it stands still then is no news."""
+        before = self._before[0]
+        since = trusted[0] - before[0]
+        moved = trusted[4] - before[4] + density * trusted[2] * (trusted[2] - before[2])
+        return 0.0 < since < inf and -MOVES * since < moved < MOVES * since
 
     def _earlier(self, trusted: Kept) -> Kept:
         """What is kept of `EARLIER` before an instant: in still air the force tells V well enough from there on."""
@@ -415,7 +436,7 @@ class StaticWatch:
         """Whether it may stand still. In still air it is too early then to blame the total port."""
         return self._test.evidence > DOUBTFUL
 
-    def take(self, t: float, reading: float, lift: float, density: float, raw: float) -> str:
+    def take(self, t: float, reading: float, lift: float, air: tuple[float, float], raw: float) -> str:
         """Take a reading; return what is wrong with the port, "frozen" or "stuck"; "" for nothing.
 
         Parameters
@@ -426,8 +447,8 @@ class StaticWatch:
             Pa.
         lift : float
             Mean of −f_z since the last one, m/s²; NaN where it is not known, and the port is not tested.
-        density : float
-            Of the air, kg/m³.
+        air : tuple of float
+            Its density, kg/m³, and the airspeed, m/s.
         raw : float
             The reading as it came, Pa.
         """
@@ -439,7 +460,7 @@ class StaticWatch:
         if dt > GAP:
             self._test, dt = ClimbTest(self._variance, reading, self._offset_sd, self._gusts), 0.0
         self._t = t
-        evidence = self._test.add(reading, dt, lift, density * GRAVITY)
+        evidence = self._test.add(reading, dt, lift, air[0] * GRAVITY, air[1])
         return "frozen" if evidence > SHUT else ""
 
     def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:

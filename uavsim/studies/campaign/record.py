@@ -487,7 +487,7 @@ def _kind(name: str, values: list[Any]) -> "pa.DataType":
 
 
 LISTS = ("filtered", "raw", "nees")
-COURSE = ("airspeed", "slope", "static", "force")
+COURSE = ("airspeed", "slope", "static", "force", "along")
 
 
 def _traces_table(found: list[ErrorTrace]) -> "pa.Table":
@@ -506,7 +506,8 @@ def _traces_table(found: list[ErrorTrace]) -> "pa.Table":
 def _course_table(course: Course) -> "pa.Table":
     import pyarrow as pa
 
-    columns = {name: pa.array(getattr(course, name), pa.float64()) for name in COURSE}
+    there = {name: getattr(course, name) for name in COURSE}
+    columns = {name: pa.array(values, pa.float64()) for name, values in there.items() if values is not None}
     return pa.table(columns).replace_schema_metadata({"temperature": repr(float(course.temperature))})
 
 
@@ -516,7 +517,7 @@ def _course_of(path: Path) -> Course | None:
     if not path.is_file():
         return None
     table = pq.ParquetFile(path).read()
-    arrays = {name: table[name].to_numpy() for name in COURSE}
+    arrays = {name: table[name].to_numpy() for name in COURSE if name in table.column_names}  # `along` is newer
     return Course(**arrays, temperature=float(table.schema.metadata[b"temperature"]))
 
 

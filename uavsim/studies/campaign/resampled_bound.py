@@ -11,7 +11,6 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from uavsim.onboard.airspeed.energy_model import V
 from uavsim.studies.cramer_rao import SIZE, AirspeedBound
 
 Array = NDArray[np.float64]
@@ -40,11 +39,13 @@ class ResampledBound(AirspeedBound):
         self.resampled: list[Array] = []
         return super()._sd()
 
-    def _advance(self, to: float) -> None:
-        f, noise = self._model(self.time, to)
-        self.information.predict(f, noise)
+    def _predict(self, f: Array, noise: Array) -> None:
+        super()._predict(f, noise)
         self._stack = self._predicted(f, noise)
-        self.time, self._scaled = to, 0.0
+
+    def _turn(self, turn: Array) -> None:
+        super()._turn(turn)
+        self._stack = turn @ self._stack @ turn.T
 
     def _predicted(self, f: Array, noise: Array) -> Array:
         inverse = np.linalg.inv(noise)
@@ -69,9 +70,7 @@ class ResampledBound(AirspeedBound):
     def _told(self, t: float) -> float:
         if self._reading % EVERY == 0:
             stack = self._predicted(*self._model(self.time, t)) if t > self.time else self._stack
-            variance = np.linalg.inv(stack)[:, V, V]
-            speed = self._courses.at(self._courses.airspeed, t)
             self.at.append(self._reading)
-            self.resampled.append(np.sqrt(variance + self._share**2 * (self._weights @ speed**2)))
+            self.resampled.append(np.sqrt(self._of_speed(np.asarray(np.linalg.inv(stack)), t)))
         self._reading += 1
         return super()._told(t)

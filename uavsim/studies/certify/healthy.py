@@ -59,6 +59,7 @@ FACTORS: dict[str, tuple[Any, ...]] = {
 }
 SIZE = 4410
 BOUNDED = 5  # of so many flights one has its Cramér-Rao bound computed
+FEW = 210  # flights of a part up to which each has it: of fewer a fifth would say nothing of a level
 
 LOW, HIGH = 0.90, 0.99  # of the coverage
 LEAST_VALID = 0.99
@@ -105,8 +106,8 @@ def subset(count: int, seed: int) -> list[int]:
     return sorted(int(number) for number in numbers)
 
 
-def task(number: int, seed: int) -> Task:
-    """Return the flight of a combination."""
+def task(number: int, seed: int, bounded: bool = False) -> Task:
+    """Return the flight of a combination; every fifth has its bound computed, or it is asked for."""
     levels = combination(number)
     overrides = (
         f"accelerometer.preset={levels['accelerometer']}",
@@ -120,12 +121,13 @@ def task(number: int, seed: int) -> Task:
         f"air_data.tare={levels['tare']}",
         f"environment.temperature_offset={TEMPERATURES[levels['temperature']]:g}",
     )
-    return Task(number, "catapult", overrides, seed, levels, bounded=number % BOUNDED == 0)
+    return Task(number, "catapult", overrides, seed, levels, bounded=bounded or number % BOUNDED == 0)
 
 
 def tasks(seed: int, count: int | None = None) -> list[Task]:
     """Return the set, or a part of it."""
-    return [task(number, seed) for number in subset(SIZE if count is None else count, seed)]
+    size = SIZE if count is None else count
+    return [task(number, seed, bounded=size <= FEW) for number in subset(size, seed)]
 
 
 # -- what came ---------------------------------------------------------------------------------------------------------
@@ -149,7 +151,12 @@ def judge(rows: Sequence[Row], seed: int, before: dict[str, Any] | None = None) 
     checks += _coverage(levels)
     checks.append(_cells(flown))
     checks += _fat(levels, before)
-    tables = {"levels": levels, "false flags": flag_rows(flown), "phases": phase_rows(flown)}
+    tables = {
+        "levels": levels,
+        "false flags": flag_rows(flown),
+        "phases": phase_rows(flown),
+        "readiness": readiness_rows(flown),
+    }
     return Verdict(tuple(checks), tables, worst(rows, seed))
 
 
@@ -216,23 +223,39 @@ def phase_rows(flown: Sequence[Row]) -> list[dict[str, Any]]:
 def flag_rows(flown: Sequence[Row]) -> list[dict[str, Any]]:
     """Return false flags of all flights and of each part: how many, and 95 % bounds per flight and per hour."""
     found = []
-    pools = [("all", "", list(flown))]
-    for factor, levels in FACTORS.items():
-        pools += [(factor, level, [row for row in flown if row[factor] == level]) for level in levels]
-    for factor, level, some in pools:
-        if not some:
-            continue
+    for name, some in _pools(flown):
         flagged, events = sum(row["flags"] > 0 for row in some), int(_sum(some, "flags"))
         hours = _sum(some, "hours")
         found.append(
             {
-                "of": f"{factor} {level}".strip(),
+                "of": name,
                 "flights": len(some),
                 "flagged": flagged,
                 "at most, of flights": share_interval(flagged, len(some))[1],
                 "hours": hours,
                 "at most, per hour": rate_interval(events, hours)[1] if hours > 0.0 else None,
             }
+        )
+    return found
+
+
+def _pools(flown: Sequence[Row]) -> list[tuple[str, Sequence[Row]]]:
+    """Return all flights and those of each level that has flown, by name."""
+    pools: list[tuple[str, Sequence[Row]]] = [("all", flown)]
+    for factor, levels in FACTORS.items():
+        pools += [(f"{factor} {level}", [row for row in flown if row[factor] == level]) for level in levels]
+    return [(name, some) for name, some in pools if some]
+
+
+def readiness_rows(flown: Sequence[Row]) -> list[dict[str, Any]]:
+    """Return how often a sound aircraft was not ready, of all flights and of each level, with 95 % bounds."""
+    found = []
+    for name, some in _pools(flown):
+        told = [row for row in some if row.get("ready") is not None]
+        wrong = sum(not row["ready"] for row in told)
+        low, high = share_interval(wrong, len(told)) if told else (None, None)
+        found.append(
+            {"of": name, "flights": len(some), "told": len(told), "not ready": wrong, "low": low, "high": high}
         )
     return found
 

@@ -19,6 +19,7 @@ from math import inf, isfinite, nan
 from typing import Any
 
 from uavsim.studies.certify.figures import Row
+from uavsim.studies.certify.tasks import numbers
 from uavsim.studies.certify.verdict import Check, Verdict
 from uavsim.studies.faults import CASES, FaultFlight, Summary, fly_case, summarise
 
@@ -68,8 +69,7 @@ class FaultTask:
 
 def tasks(seed: int, count: int | None = None) -> list[FaultTask]:
     """Return the set, or as many flights of each case as a part of it holds."""
-    each = EACH if count is None else max(1, min(EACH, count // len(CASES)))
-    return [FaultTask(place * SECTION + flight, seed) for place in range(len(CASES)) for flight in range(each)]
+    return [FaultTask(number, seed) for number in numbers(len(CASES), EACH, SECTION, count)]
 
 
 def judge(rows: Sequence[Row], seed: int, before: dict[str, Any] | None = None) -> Verdict:

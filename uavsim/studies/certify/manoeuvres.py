@@ -6,7 +6,8 @@ then flies drawn legs one after the other: still and level flight, set speeds fr
 tare, noise, field (-400 … 4000 m) and temperature (-40 … 55 °C at the ground) are drawn; half of the flights are in
 still air, half in a wind of 3 … 8 m/s with its turbulence.
 
-Each is scored as the rig is, over its whole run.
+Each is scored as the rig is, over its whole run. A flag that says `range` where a pressure of the course is beyond the
+part's range is none that is false.
 """
 
 from collections.abc import Sequence
@@ -15,6 +16,9 @@ from typing import Any
 import numpy as np
 
 from sensors import Streams
+from sensors.knowledge import known_of_head
+from uavsim.flight import Flight
+from uavsim.scenario import Scenario
 from uavsim.studies.certify.figures import Row
 from uavsim.studies.certify.healthy import ACCELEROMETERS, PRESSURES
 from uavsim.studies.certify.tasks import Task
@@ -165,7 +169,23 @@ def task(number: int, seed: int) -> Task:
         overrides += [f"environment.turbulence_wind_20ft={wind:g}"]
     levels = {"push": push, "fastest": fastest, "accelerometer": accelerometer, "pressure": part, "tare": tare}
     levels |= {"noise": f"{noise:g}", "wind": "turbulent" if wind else "still", "elevation": elevation}
-    return Task(number, "catapult", tuple(overrides), seed, levels)
+    return Task(number, "catapult", tuple(overrides), seed, levels, rule=beyond)
+
+
+def beyond(flight: Flight) -> Row:
+    """Say whether a pressure of the course is beyond its sensor's range: then a flag that says so is right."""
+    known, truth = known_of_head(Scenario.from_dict(flight.scenario).air_data), flight.truth
+    return {
+        "beyond": any(
+            bool((truth[f"p_{port}"] > knowledge.high).any() or (truth[f"p_{port}"] < knowledge.low).any())
+            for port, knowledge in (("total", known.total), ("static", known.static))
+        )
+    }
+
+
+def _true(row: Row) -> bool:
+    """Whether what is flagged is so: a sensor at the end of its range."""
+    return bool(row.get("beyond")) and row["flag_kind"] == "range" and int(row["flags"]) == 1
 
 
 def tasks(seed: int, count: int | None = None) -> list[Task]:
@@ -179,8 +199,8 @@ def judge(rows: Sequence[Row], seed: int, before: dict[str, Any] | None = None) 
     flown = [row for row in rows if row["outcome"] != "refused"]
     launched = [row for row in flown if row.get("detections")]
     hours = sum(row["hours"] for row in flown)
-    flagged = [row for row in flown if row["flags"]]
-    events = sum(int(row["flags"]) for row in flown)
+    flagged = [row for row in flown if row["flags"] and not _true(row)]
+    events = sum(int(row["flags"]) for row in flagged)
     over = [row for row in flown if (row.get("worst_ratio") or 0.0) > 6.0]
     most = max((row["worst_ratio"] for row in flown), default=0.0)
     rate = rate_interval(events, hours)[1] if hours else float("nan")

@@ -19,7 +19,7 @@ import numpy as np
 
 from sensors import Streams
 from uavsim.studies.certify.figures import Row
-from uavsim.studies.certify.tasks import Task
+from uavsim.studies.certify.tasks import Task, numbers
 from uavsim.studies.certify.verdict import Check, Verdict
 
 PART = 200
@@ -45,8 +45,7 @@ def task(number: int, seed: int) -> Task:
 
 def tasks(seed: int, count: int | None = None) -> list[Task]:
     """Return the set, or as many flights of each part as a part of it holds."""
-    each = PART if count is None else max(1, min(PART, count // 3))
-    return [task(part * PART + flight, seed) for part in range(3) for flight in range(each)]
+    return [task(number, seed) for number in numbers(3, PART, PART, count)]
 
 
 def judge(rows: Sequence[Row], seed: int, before: dict[str, Any] | None = None) -> Verdict:

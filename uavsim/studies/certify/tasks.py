@@ -20,6 +20,22 @@ Rule = Callable[[Flight], Row]
 """Holds a flight against the rule of its case; the keys are columns of its row."""
 
 
+def numbers(cases: int, each: int, section: int, count: int | None) -> list[int]:
+    """Return the numbers of a set's flights, case by case.
+
+    Parameters
+    ----------
+    cases, each : int
+        Of the whole set: how many, and the flights of each.
+    section : int
+        From one case's first number to the next's.
+    count : int or None
+        About how many flights a part of the set has: the first of each case, one at least. None: the whole set.
+    """
+    flown = each if count is None else max(1, min(each, count // cases))
+    return [place * section + flight for place in range(cases) for flight in range(flown)]
+
+
 @dataclass(frozen=True, slots=True)
 class Task:
     """A flight that is to be flown.

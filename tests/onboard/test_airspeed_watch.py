@@ -1,0 +1,144 @@
+"""What healthy ports do in turns, pulls, turbulence and at speed is no fault: readings built by hand, test by test."""
+
+import numpy as np
+import pytest
+
+from uavsim.onboard.airspeed import AidedSettings, NoiseModel
+from uavsim.onboard.airspeed.air import Air
+from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
+from uavsim.onboard.airspeed.frozen import FrozenTest
+from uavsim.onboard.airspeed.monitor import CALM, FROZEN, PortMonitor
+from uavsim.onboard.airspeed.ports import SHUT_OUT, Ports
+from uavsim.onboard.airspeed.watch import SHUT
+from uavsim.onboard.repeats import LEAST
+
+DT = 0.01  # s
+WEIGHT, DENSITY = 12.0, 1.2  # Pa/m, kg/m³
+
+
+def wander(sd, time, size, generator):
+    """A first-order process: what gusts do to a port's pressure, Pa."""
+    keep, found, value = np.exp(-DT / time), np.empty(size), 0.0
+    for k, white in enumerate(generator.standard_normal(size).tolist()):
+        value = keep * value + np.sqrt(1.0 - keep * keep) * sd * white
+        found[k] = value
+    return found
+
+
+def static_evidence(pressure, lift, *, sd, speed, gusts, seed=0):
+    """W of static pressures, Pa, and lifts, m/s², read with a noise, Pa."""
+    generator = np.random.default_rng(seed)
+    test = ClimbTest(sd * sd, float(pressure[0]), 0.2, gusts)
+    read = pressure + sd * generator.standard_normal(len(pressure))
+    return np.array([test.add(p, DT, n, WEIGHT, speed) for p, n in zip(read.tolist(), lift.tolist(), strict=True)])
+
+
+def turn(bank_deg, readings=2000):
+    """Lift of a level turn, m/s²: rolled into in 2 s, held for 6 s, and out of."""
+    bank = np.radians(bank_deg) * np.interp(np.arange(readings) * DT, [5.0, 7.0, 13.0, 15.0], [0.0, 1.0, 1.0, 0.0])
+    return GRAVITY / np.cos(bank)
+
+
+@pytest.mark.parametrize("bank", [20.0, 32.0, 55.0])
+@pytest.mark.parametrize("gusts", [False, True])
+@pytest.mark.parametrize("sd", [0.1, 1.0, 3.7])
+def test_a_level_turn_is_no_climb_that_did_not_come(bank, gusts, sd):
+    """However quiet the sensor is, and whether gusts are declared or not: below the level, and far from it."""
+    assert static_evidence(np.zeros(2000), turn(bank), sd=sd, speed=32.0, gusts=gusts).max() < 0.7 * SHUT
+
+
+def test_a_turn_is_known_by_what_is_beyond_the_offset_of_f_z():
+    """An accelerometer known to read 5.7 m/s² too little, and 1.0 m/s² too much of it in a turn: 6.7 m/s² of pull."""
+    test = ClimbTest(9.0, 0.0, 9.8, True)
+    test.a = -5.7
+    test.add(0.0, 1.0, GRAVITY + 1.0, WEIGHT, 54.0)
+    assert test._pull.mean == pytest.approx(6.7)
+
+
+@pytest.mark.parametrize("speed", [32.0, 80.0, 145.0])
+def test_gusts_that_move_a_quiet_static_port_are_no_fault(speed):
+    """What a gust of 1 m/s does to a port that is off by 2 % of q, in level flight at that speed, m/s."""
+    for seed in range(3):
+        generator = np.random.default_rng(seed)
+        moved = wander(0.02 * DENSITY * speed, 0.5, 3000, generator)
+        lift = GRAVITY + wander(0.7, 0.2, 3000, generator)
+        assert static_evidence(moved, lift, sd=0.1, speed=speed, gusts=True, seed=seed).max() < SHUT
+
+
+@pytest.mark.parametrize("gusts", [False, True])
+@pytest.mark.parametrize("sd", [0.1, 2.7])
+def test_a_static_port_that_shuts_in_a_climb_is_known_however_quiet_its_sensor(sd, gusts):
+    """At 2 m/s of climb, within 1 s."""
+    pressure = -WEIGHT * 2.0 * DT * np.minimum(np.arange(1500), 1000)
+    found = static_evidence(pressure, np.full(1500, GRAVITY + 0.1), sd=sd, speed=32.0, gusts=gusts)
+    assert found[:1000].max() < SHUT
+    assert (found[1000:1100] > SHUT).any()
+
+
+def test_after_an_acceleration_b_is_known_as_well_as_scale_errors_allow():
+    """5 m/s² for 15 s: 2 % of that, 0.1 m/s², as it begins and as it ends; in steady flight b is known to 0.03 m/s²."""
+    generator, sd = np.random.default_rng(2), 1.0
+    t = np.arange(4000) * DT
+    speed = np.interp(t, [15.0, 30.0], [50.0, 125.0])
+    test, known, found = FrozenTest(sd * sd, 0.002, False), [], []
+    for k in range(1, len(t)):
+        reading = 0.5 * DENSITY * speed[k] ** 2 + sd * generator.standard_normal()
+        turned = GRAVITY**2 / speed[k] ** 2
+        gained = 1.02 * (speed[k] - speed[k - 1]) + (0.1 + 5.0 * turned) * DT
+        gust = 7.2e-5 * speed[k] * DT
+        found.append(test.add(reading, 0.0, 0.0, gained, DT, DENSITY * speed[k], gust, turned))
+        known.append(test.lost_variance**0.5)
+    assert max(found) < 0.5 * CALM
+    assert known[1490] < 0.03
+    assert max(known[1500:1700]) > 0.04
+    assert max(known[3000:3200]) > 0.04
+
+
+@pytest.mark.parametrize(("straight", "shut"), [(True, True), (False, False)])
+def test_stillness_in_a_pull_is_no_evidence(straight, shut):
+    """Two seconds in which the total pressure stands still: a shut port in straight flight, and nothing in a pull."""
+    generator, sd, speed = np.random.default_rng(3), 1.0, 47.0
+    gust = 2.0 * 1.0**2 / 200.0 * speed * DT
+    still = np.cumsum(np.sqrt(gust) * generator.standard_normal(1200)) * DENSITY * speed
+    still[1000:] = still[1000]
+    test = FrozenTest(sd * sd, 0.002, True)
+    found = [
+        test.add(z + sd * e, 0.0, 0.0, 0.0, DT, DENSITY * speed, gust, 0.04, straight or k < 1000)
+        for k, (z, e) in enumerate(zip(still.tolist(), generator.standard_normal(1200).tolist(), strict=True))
+    ]
+    assert (max(found) > FROZEN) == shut
+
+
+def monitored(nus):
+    """At which of the innovations, in standard deviations, a drift is told; none: all of them."""
+    monitor = PortMonitor(0.002, 25.0, 0.01, LEAST, True)
+    for k, nu in enumerate(nus):
+        if monitor.add(1e5 + k, 5.0 * nu, nu * nu, 0.0) == "drift":
+            return k
+    return len(nus)
+
+
+def test_a_filter_that_is_narrow_for_long_makes_no_drift_but_a_leak_does():
+    """Innovations of four standard deviations for half a minute, and then runs of ±6 for 0.8 s; a leak after 20 s."""
+    generator = np.random.default_rng(4)
+    white = generator.standard_normal(3000).tolist()
+    runs = [6.0 * (-1) ** (k // 80) for k in range(2400)]
+    assert monitored([4.0 * e for e in white] + runs) == len(white) + len(runs)
+    assert monitored(white + [6.0] * 200) < len(white) + 70
+
+
+def test_a_gust_that_comes_at_once_is_not_shut_out():
+    """After five total pressures beyond the gate V is known less well by a gust that is declared."""
+    aided = AidedSettings(gust_sd=1.0)
+    ports = Ports(aided, Air(aided, 1.0), NoiseModel(total_sd=1.0, static_sd=1.0, temperature_sd=0.5))
+
+    class Energy:
+        widened = 0.0
+
+        def widen_speed(self, variance):
+            self.widened += variance
+
+    energy = Energy()
+    for k in range(2 * SHUT_OUT):
+        ports.gate(energy)
+        assert energy.widened == float((k + 1) // SHUT_OUT)
