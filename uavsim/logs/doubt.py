@@ -51,9 +51,9 @@ def doubted(recording: Recording, settings: DetectorSettings, evidence: Evidence
     seen = collected(recording.readings, recording.rate) if evidence is None else evidence
     rest = seen.rest()
     remarks = [*_unit(rest, recording), *_axes(rest), *_repeats(seen), *_counted(recording), *_others(recording)]
-    if is_in_feet(rest) and not scaled(recording.mapping):
-        readings = recording.readings.copy()
-        readings[:, 1:] *= FOOT
+    factor = unit_of(seen, recording.mapping)
+    if factor != 1.0:
+        readings = recording.readings * [1.0, factor, factor, factor]
         recording = replace(recording, readings=readings)
     remarks += _range(recording, settings)
     return replace(recording, remarks=(*recording.remarks, *remarks))
@@ -67,6 +67,11 @@ def scaled(mapping: str) -> bool:
 def is_in_feet(rest: Rest) -> bool:
     """Whether rest reads 1 g in ft/s²."""
     return rest.share(G0, ONE_G) < SOME and rest.share(G0 / FOOT, IN_FEET) >= MOST
+
+
+def unit_of(evidence: Evidence, mapping: str) -> float:
+    """Return what a log's unit of force is taken for, m/s²: 0.3048 if rest reads 1 g in ft/s² and no map says else."""
+    return FOOT if is_in_feet(evidence.rest()) and not scaled(mapping) else 1.0
 
 
 # -- unit ------------------------------------------------------------------------------------------------------------

@@ -17,6 +17,7 @@ import numpy as np
 
 from uavsim.files import whole
 from uavsim.flight import UNITS, Flight, frame
+from uavsim.logs.doubt import unit_of
 from uavsim.logs.recording import Array, Gap, Recording
 from uavsim.logs.stream import Lot, Shown, Stream, Survey
 from uavsim.logs.watch import Watch
@@ -130,8 +131,13 @@ def _passes(
     survey = stream.survey(None if shown is None else lambda share: shown(0.4 * share))
     watch, part = Watch(settings, survey.rate, survey.axes), -1
     thin, greatest, at = _Thin(survey), -np.inf, survey.start
+    factor = unit_of(survey.evidence, stream.mapping or "")
+
+    def as_taken(lot: Lot) -> Lot:
+        return lot if factor == 1.0 else replace(lot, readings=lot.readings * [1.0, factor, factor, factor])
+
     with _table(folder / "accelerometer.parquet") as write:
-        for lot in stream.lots(None if shown is None else lambda share: shown(0.4 + 0.6 * share)):
+        for lot in map(as_taken, stream.lots(None if shown is None else lambda share: shown(0.4 + 0.6 * share))):
             if lot.begins or part < 0:
                 part += 1
                 watch.begin(survey.rates[min(part, len(survey.rates) - 1)])

@@ -15,6 +15,7 @@ import numpy as np
 
 from sensors.bench_log import Source, numbers
 from sensors.files import look
+from uavsim.logs.evidence import Evidence
 from uavsim.logs.formats import Table, named, read_tables, table_in
 from uavsim.logs.mapping import (
     FASTEST,
@@ -34,6 +35,7 @@ from uavsim.logs.recording import AXES, GAP, Array, Recording
 from uavsim.logs.stamps import CHANGED, BackwardsError, stamped
 
 MOST_AT_ONCE = 1_500_000  # readings up to which a log is read as a whole: with all that is made of them 500 MB
+MOST_LOOKED_AT = 1_000_000  # readings of which rest is looked for: minutes at 20 kHz, hours at 100 Hz
 LOT = 200_000  # readings of a log that is read as a whole
 MOST_REMARKS = 40
 MOST_GAPS = 1000  # that are kept
@@ -75,6 +77,8 @@ class Survey:
         The first of them: the times before and after, s.
     axes : tuple of str
         Which it holds.
+    evidence : Evidence
+        What its first readings show.
     """
 
     readings: int
@@ -84,6 +88,7 @@ class Survey:
     rates: list[float]
     gaps: list[tuple[float, float]]
     axes: tuple[str, ...]
+    evidence: Evidence
 
     @property
     def rate(self) -> float:
@@ -266,6 +271,7 @@ class Stream:
         axes = np.zeros(3, bool)
         sample: list[Array] = []
         last = np.nan
+        evidence: Evidence | None = None
         try:
             for lot in self.lots(shown):
                 t = lot.readings[:, 0]
@@ -281,6 +287,9 @@ class Stream:
                 for row in np.flatnonzero(steps > GAP * usual * (1.0 + 1e-6))[: MOST_GAPS - len(gaps)]:
                     gaps.append((float(t[row] - steps[row]), float(t[row])))
                 axes |= np.isfinite(lot.readings[:, 1:]).any(axis=0)
+                evidence = Evidence(1.0 / (usual or 1.0)) if evidence is None else evidence
+                if evidence.rows < MOST_LOOKED_AT:
+                    evidence.add(lot.readings)
                 if len(sample) < 100:
                     sample.append(lot.readings[:: max(1, t.size // 200), 1:])
                 last = float(t[-1])
@@ -292,7 +301,7 @@ class Stream:
             rates = [1.0 / _middle(part) if _middle(part) else np.inf for part in intervals]
             self._check(rates, np.vstack(sample))
         held = tuple(axis for axis, is_held in zip(AXES, axes.tolist(), strict=True) if is_held)
-        return Survey(readings, start, end, duration, rates, gaps, held)
+        return Survey(readings, start, end, duration, rates, gaps, held, evidence or Evidence(1.0))
 
     def _check(self, rates: Sequence[float], sample: Array) -> None:
         """Refuse what is no time, or no m/s²."""
