@@ -5,6 +5,7 @@ none, with the detector's windows below if it has any. Time is the log's own, in
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,7 +88,11 @@ def save_plot(flight: "Flight", folder: Path) -> Path:
 
 
 def draw(flight: "Flight") -> "Figure":
-    """Specific force and the detector's state over the whole recording and around the first detection."""
+    """Specific force and the detector's state over the whole recording and around the first detection.
+
+    Of a log whose clock begins anew it is the part with the first detection, or with the greatest f_x.
+    """
+    flight = _part(flight)
     readings, found = flight.accelerometer, flight.score["recording"]["detections"]
     t = readings["t"].to_numpy()
     centre = found[0] if found else float(t[int(np.nanargmax(readings["fx"].to_numpy()))])
@@ -112,6 +117,24 @@ def draw(flight: "Flight") -> "Figure":
         marks = [Mark(centre, "greatest $f_x$", GREY)]
     flag_all(figure, columns, [marks[:MOST_LABELS]] * 2)
     return figure
+
+
+def _part(flight: "Flight") -> "Flight":
+    """Return the part of a log in which its clock runs on and the first detection lies, or the greatest f_x."""
+    readings, detector = flight.accelerometer, flight.detector
+    t = readings["t"].to_numpy()
+    back = np.flatnonzero(np.diff(t) <= 0.0) + 1
+    if not back.size or len(detector) != len(readings):
+        return flight
+    recognised = np.flatnonzero(detector["recognised"].to_numpy())
+    row = int(recognised[0]) if recognised.size else int(np.nanargmax(readings["fx"].to_numpy()))
+    edges = [0, *back.tolist(), len(t)]
+    place = int(np.searchsorted(edges, row, side="right"))
+    start, end = edges[place - 1], edges[place]
+    tables = {name: flight.tables[name].iloc[start:end] for name in ("accelerometer", "detector")}
+    found = [float(t[i]) for i in recognised if start <= i < end]
+    recording = {**flight.score["recording"], "detections": found}
+    return replace(flight, tables={**flight.tables, **tables}, score={**flight.score, "recording": recording})
 
 
 def _words(flight: "Flight") -> str:
