@@ -109,7 +109,6 @@ def _replay_log(
     from uavsim.cli.replay_in_lots import in_lots
     from uavsim.logs import is_long, read_log, replay_log
     from uavsim.scenario import load_scenario
-    from uavsim.studies.low_rates import remark
     from uavsim.views import documents, terminal
     from uavsim.views import log as view
 
@@ -123,8 +122,11 @@ def _replay_log(
 
     def made(recording: "Recording") -> "Flight":
         flight = replay_log(recording, detector)
-        if settings and (said := remark(detector, recording.rate)):
-            flight.score["recording"]["remarks"].append(said)
+        if settings:
+            from uavsim.studies.low_rates import remark
+
+            said = remark(detector, recording.rate)
+            flight.score["recording"]["remarks"] += [] if said is None else [said]
         return flight
 
     def draw(folder: Path) -> None:

@@ -141,16 +141,16 @@ def _axes(rest: Rest) -> Iterator[str]:
 
 
 def _repeats(seen: Evidence) -> Iterator[str]:
-    """Tell spells in which readings repeat."""
-    spells = seen.repeats
-    if not spells:
-        return
-    longest = max(spells, key=lambda spell: spell.end - spell.start)
-    more = f", the longest of {len(spells)} such spells" if len(spells) > 1 else ""
-    yield (
-        f"readings repeat for {longest.end - longest.start:.3g} s from {longest.start:.3f} s on ({longest.rows} rows)"
-        f"{more}: what happened meanwhile is not in the log, and no launch can be seen in it"
-    )
+    """Tell spells in which readings repeat, all axes or one of them."""
+    for what, spells in (("readings repeat", seen.repeats), *((f"{a} repeats", of) for a, of in seen.stuck.items())):
+        if not spells:
+            continue
+        longest = max(spells, key=lambda spell: spell.end - spell.start)
+        more = f", the longest of {len(spells)} such spells" if len(spells) > 1 else ""
+        yield (
+            f"{what} for {longest.end - longest.start:.3g} s from {longest.start:.3f} s on ({longest.rows} rows)"
+            f"{more}: what happened meanwhile is not in the log, and no launch can be seen in it"
+        )
 
 
 def backwards(recording: Recording, settings: DetectorSettings, detections: Sequence[float]) -> list[str]:
