@@ -18,6 +18,7 @@ import numpy as np
 from uavsim.files import whole
 from uavsim.flight import UNITS, Flight, frame
 from uavsim.logs.doubt import unit_of
+from uavsim.logs.informed import sources
 from uavsim.logs.recording import Array, Gap, Recording
 from uavsim.logs.stream import Lot, Shown, Stream, Survey
 from uavsim.logs.watch import Watch
@@ -94,6 +95,11 @@ def replay_long(
     stretch = stream.between(centre - before, centre + after)
     stretch = replace(stretch, remarks=tuple(dict.fromkeys((*stream.remarks, *stretch.remarks))))
     flight = _whole(replay(stretch), survey, watch.detections)
+    if sources(launch.build(settings, survey.rate), stretch.series):
+        flight.score["recording"]["remarks"].append(
+            "a log that is read in parts is searched by the force alone; what the detector is told besides it is told "
+            "where a flight is replayed by itself"
+        )
     tables = {**flight.tables, "accelerometer": thin.table(stretch.readings)}
     spans = spans_of(watch.detections, survey)
     return LongReplay(replace(flight, tables=tables), ("accelerometer",), spans)
