@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m pip
 
-.PHONY: help fly test lint validate certify mutants golden bench docs-numbers aircraft clean
+.PHONY: help fly test lint validate certify mutants golden recordings bench docs-numbers aircraft clean
 
 help:
 	@echo "make fly       install, then fly the scenario 'catapult' with its score and plots"
@@ -13,6 +13,7 @@ help:
 	@echo "make certify   every set of docs/certify.md, whole (two to three hours; goes on where it was ended)"
 	@echo "make mutants   how many of 300 small errors the tests see (half an hour)"
 	@echo "make golden    fly the short flights whose figures are kept, and keep them anew"
+	@echo "make recordings  replay the logs of the folder UAVSIM_RECORDINGS against their right answers"
 	@echo "make bench     what a step costs"
 	@echo "make docs-numbers  run what the docs show and has not been run, and write their pages"
 	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 (installs AeroSandbox)"
@@ -44,6 +45,9 @@ mutants: $(VENV)/.dev
 
 golden: $(VENV)/.dev
 	$(BIN)/python tests/golden_flights.py
+
+recordings: $(VENV)/.fly
+	$(BIN)/python scripts/recordings.py --out output/recordings.md
 
 bench: $(VENV)/.fly
 	$(BIN)/uavsim bench

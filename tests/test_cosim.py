@@ -278,7 +278,8 @@ def test_a_changed_reading_changes_the_replay(launch: Flight) -> None:
 
 def test_onboard_is_made_of_the_scenario() -> None:
     """It is told what to fly, when the crew will release and what the head's calibration gave, no more."""
-    assert list(signature(Onboard.__init__).parameters) == ["self", "scenario", "release_time", "calibration"]
+    assert list(signature(Onboard.of).parameters) == ["scenario", "release_time", "calibration"]
+    assert list(signature(Onboard.__init__).parameters) == ["self", "scenario", "told", "detector", "release_time"]
 
 
 # -- the step --------------------------------------------------------------------------------------------------------

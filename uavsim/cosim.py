@@ -31,7 +31,7 @@ from uavsim.flight import Flight, frame, frame_of_floats, frame_of_rows
 from uavsim.judged import Judged
 from uavsim.onboard import airspeed, launch
 from uavsim.onboard.flight_computer import FlightComputer
-from uavsim.onboard.flow_through import FlowThrough
+from uavsim.onboard.flow_through import FlowThrough, FlowThroughSettings
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.onboard.launch.guarded import STATE, GuardedDetector
 from uavsim.onboard.rail_offset import RailOffset
@@ -120,31 +120,68 @@ def _told(detector: launch.Detector) -> list[Any]:
     return [getattr(detector, name, None) for name in STATE]
 
 
+@dataclass(frozen=True, slots=True)
+class Believed:
+    """What the onboard code of one flight is told before it: of sensors, air, and when the head is under its cover."""
+
+    rate: float  # of the accelerometer, Hz
+    noise: airspeed.NoiseModel
+    air: airspeed.EstimatorSettings
+    tare: airspeed.TareWindow | None
+    flow: FlowThroughSettings | None
+    """What is undone of a thermal differential sensor's readings; None: nothing."""
+
+
+def believed(scenario: Scenario, release_time: float, calibration: Calibration) -> Believed:
+    """What the onboard code of a scenario's flight believes."""
+    return Believed(
+        scenario.accelerometer.description().rate,
+        believed_noise(scenario, calibration),
+        believed_air(scenario),
+        tare_window(scenario, release_time),
+        believed_flow(scenario),
+    )
+
+
 class Onboard:
     """The flight computer of a scenario, fed with readings; keeps what it says.
 
     The same object serves the loop and the replay of recorded readings, so what a recording gives does not depend on
     which of the two it came from.
+
+    Parameters
+    ----------
+    scenario
+        Its flight computer, its launch's axis and how its accelerometer is mounted.
+    told
+        What is believed of sensors and air.
+    detector
+        Recognises the launch.
+    release_time
+        From when on a detection counts, s.
     """
 
-    def __init__(self, scenario: Scenario, release_time: float, calibration: Calibration) -> None:
-        rate = scenario.accelerometer.description().rate
+    def __init__(self, scenario: Scenario, told: Believed, detector: launch.Detector, release_time: float) -> None:
         self._release_time = release_time
-        self._detector = WatchedDetector(launch.build(scenario.detector, rate), release_time - DETECTOR_LEAD)
-        noise = believed_noise(scenario, calibration)
+        self._detector = WatchedDetector(detector, release_time - DETECTOR_LEAD)
         self.computer = FlightComputer(
             scenario.flight_computer,
             self._detector,
-            airspeed.build(believed_air(scenario), noise, tare_window(scenario, release_time)),
-            rate,
+            airspeed.build(told.air, told.noise, told.tare),
+            told.rate,
             scenario.launch_axis,
-            rail := RailOffset(noise),
-            Readiness(noise, rail),
+            rail := RailOffset(told.noise),
+            Readiness(told.noise, rail),
         )
         self.accelerometer = self._aligned(scenario.accelerometer.mounting_deg)
-        flow = believed_flow(scenario)
-        self._flow = None if flow is None else FlowThrough(flow)
+        self._flow = None if told.flow is None else FlowThrough(told.flow)
         self.estimates: list[Estimate] = []
+
+    @classmethod
+    def of(cls, scenario: Scenario, release_time: float, calibration: Calibration) -> "Onboard":
+        """That of a scenario's flight."""
+        told = believed(scenario, release_time, calibration)
+        return cls(scenario, told, launch.build(scenario.detector, told.rate), release_time)
 
     def _aligned(self, mounting_deg: tuple[float, float, float]) -> Callable[[float, float, float, float], None]:
         """Return what takes a reading, turned from the case's axes as they are known into the body's."""
@@ -230,7 +267,7 @@ class Cosimulation:
             dt=dt,
             surroundings=around,
         )
-        self.onboard = Onboard(scenario, release, self.draws.calibration)
+        self.onboard = Onboard.of(scenario, release, self.draws.calibration)
         self.readings = array("d")  # flat, as the bytes of a table: neither the collector nor the end pays for floats
         self.air_readings = array("d")
         self.steps = round(scenario.duration * scenario.plant.step_rate)
@@ -434,7 +471,7 @@ def replay(flight: Flight) -> Flight:
     scenario = Scenario.from_dict(flight.scenario)
     check_units(flight, scenario)
     draws = draw(scenario)
-    onboard = Onboard(scenario, draws.release_time, draws.calibration)
+    onboard = Onboard.of(scenario, draws.release_time, draws.calibration)
     readings: list[Reading] = [(a, b, c, d) for a, b, c, d in flight.accelerometer.to_numpy().tolist()]
     air: list[AirReading] = [(a, b, c, d, e, f) for a, b, c, d, e, f in flight.air_data.to_numpy().tolist()]
     with suppress(PartError):  # which ended the flight, too

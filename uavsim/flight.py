@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 DERIVED = {"calibrated_airspeed": "m/s", "equivalent_airspeed": "m/s"}
 """Columns that follow from others after the flight (`uavsim.airspeeds`); a flight of an earlier version lacks them."""
 
+OF_LOGS = {"airspeed_reference": "m/s"}
+"""Columns of an estimate that only a log's has."""
+
 UNITS: dict[str, dict[str, str]] = {
     "truth": {**TRUTH_UNITS, "phase": "", **DERIVED},
     "accelerometer": {"t": "s", "fx": "m/s^2", "fy": "m/s^2", "fz": "m/s^2"},
@@ -135,7 +138,7 @@ class Flight:
 
         write_json(folder / "events.json", self.events)
         for name, table in self.tables.items():
-            write_table(folder / f"{name}.parquet", table, UNITS[name])
+            write_table(folder / f"{name}.parquet", table, UNITS[name] | OF_LOGS)
         if extra is not None:
             extra(folder)
         write_toml(folder / "scenario.toml", inputs.write(folder, self.scenario))
@@ -203,7 +206,9 @@ def _read_table(name: str, file: Path) -> "pd.DataFrame":
         table = ParquetTable(look(file))
         missing = [column for column in UNITS[name] if column not in table.names and column not in DERIVED]
         if not missing:
-            found = table.frame([column for column in table.names if column in UNITS[name]], texts=("phase",))
+            found = table.frame(
+                [column for column in table.names if column in UNITS[name] or column in OF_LOGS], texts=("phase",)
+            )
             if name == "truth":
                 _check_clock(found["t"].to_numpy(float))
             return found

@@ -96,8 +96,8 @@ def _airspeed(flight: Judged) -> dict[str, Any]:
     figures = {"": flight.rows(time) & exists} | {name: flight.rows(time, name) & exists for name in PHASES}
     result = {
         name: {
-            **_figures(error[rows], raw[rows], sd[rows], valid[rows], visible[rows]),
-            **_innovations(nis[rows]),
+            **error_figures(error[rows], raw[rows], sd[rows], valid[rows], visible[rows]),
+            **innovation_figures(nis[rows]),
             **{speed: _errors(other[rows]) for speed, other in others.items()},
         }
         for name, rows in figures.items()
@@ -120,7 +120,7 @@ def _errors(error: Array) -> dict[str, float | None]:
     }
 
 
-def _figures(error: Array, raw: Array, sd: Array, valid: Array, visible: NDArray[np.bool_]) -> dict[str, Any]:
+def error_figures(error: Array, raw: Array, sd: Array, valid: Array, visible: NDArray[np.bool_]) -> dict[str, Any]:
     """Error figures over the rows at which raw and filtered value exist, and the share of all rows that are valid."""
     both = np.isfinite(error) & np.isfinite(raw)
     error, raw, sd, visible = error[both], raw[both], sd[both], visible[both]
@@ -149,7 +149,7 @@ def _covered(relative: Array, sigmas: float) -> float | None:
     return _number((np.abs(relative) <= sigmas).mean()) if relative.size else None
 
 
-def _innovations(nis: Array) -> dict[str, Any]:
+def innovation_figures(nis: Array) -> dict[str, Any]:
     """Mean NIS of both pressures' readings, and the probability that white innovations look as coloured as these.
 
     The latter is McLeod and Li's test on the total pressure's: autocorrelations of the squares.

@@ -44,7 +44,13 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
     ),
     "aided filter": (
-        tuple(f"uavsim/onboard/airspeed/{name}.py" for name in ("aided", "onset", "unfolding", "air", "offset")),
+        tuple(
+            f"uavsim/onboard/airspeed/{name}.py"
+            for name in (
+                *("aided", "hand_over", "admission", "progress", "corrections", "told", "launch_tests", "port_errors"),
+                *("onset", "unfolding", "air", "offset"),
+            )
+        ),
         (
             FLIGHTS,
             *(f"tests/onboard/test_{name}.py" for name in ("aided_equations", "airspeed_rooms", "airspeed_aided")),

@@ -414,7 +414,7 @@ def test_memory_is_constant():
     for k in range(20_000):
         estimator.accelerometer(0.001 * k, 2.5, 0.0, 0.0)
         estimator.step(0.001 * k, STATIC, STATIC, KELVIN, 0.001 * k, 0.001 * k)
-    assert len(estimator._rows) == estimator._rows.maxlen
+    assert len(estimator._hand_over.rows) == estimator._hand_over.rows.maxlen
     assert len(estimator._gained._t) == 1024
 
 

@@ -78,5 +78,5 @@ def test_the_watch_begins_when_the_push_has_ended():
     """After a catapult 2 s after the recognition, after a motor of 7 s behind it."""
     for name, least, most in (("cruise", 1.5, 2.3), ("motor7", 7.0, 10.0)):
         flight = replace(MANOEUVRES[name], duration=11.0)
-        begins = run(fly(flight, 9500), believed(flight)).filter._steady_from - LAUNCH
+        begins = run(fly(flight, 9500), believed(flight)).filter._progress.steady_from - LAUNCH
         assert least < begins < most

@@ -13,12 +13,12 @@ from references.matched import COVERED, LATENCY, MODES, REST, MatchedSettings
 
 from uavsim.airdata import STANDARD_TEMPERATURE
 from uavsim.onboard.airspeed import AidedFilter, AidedSettings, EstimatorSettings
-from uavsim.onboard.airspeed.aided import COASTED
 from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
 from uavsim.onboard.airspeed.frozen import FrozenTest
 from uavsim.onboard.airspeed.monitor import CALM as CALM_LEVEL
 from uavsim.onboard.airspeed.monitor import FROZEN, PortMonitor
 from uavsim.onboard.airspeed.readmission import Readmission
+from uavsim.onboard.airspeed.told import COASTED
 from uavsim.onboard.airspeed.watch import TotalWatch
 from uavsim.onboard.repeats import LEAST, alike, apart, longest_row
 

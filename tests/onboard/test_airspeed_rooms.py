@@ -160,7 +160,7 @@ class Watch:
 def watched(total, static):
     air = Air(AidedSettings(), calibration=1.0)
     air.at(90_000.0, 0.0)
-    ports = Ports(AidedSettings(), air, NoiseModel(2.0, 3.0, 0.0), 4.0, 9.0)
+    ports = Ports(AidedSettings(), air, NoiseModel(2.0, 3.0, 0.0))
     ports.total, ports.static = total, static
     ports.seen_total, ports.seen_static = (91_000.0, 91_000.0, 1.3), (90_000.0, 4.99, 9.7)
     return ports

@@ -15,6 +15,7 @@ import numpy as np
 
 from references.gaussian import Array, MatrixFilter
 from uavsim.onboard.airspeed import AidedFilter
+from uavsim.onboard.airspeed.progress import Progress
 
 
 class _Recorded(MatrixFilter):
@@ -34,24 +35,37 @@ class _Recorded(MatrixFilter):
         self.intervals.append((x, p, f, *self.gaussian()))
 
 
+class _RecordedProgress(Progress):
+    """The filter's instants, all of which are kept."""
+
+    __slots__ = ("ends",)
+
+    def __init__(self, *arguments: Any, **parts: Any) -> None:
+        super().__init__(*arguments, **parts)
+        self.ends: list[float] = []
+
+    def go(self, to: float, dt: float) -> tuple[float, float]:
+        """Go on; see `Progress`."""
+        self.ends.append(to)
+        return super().go(to, dt)
+
+
 class RecordedFilter(AidedFilter):
     """The aided estimator that remembers all, to be smoothed; of growing memory and for studies alone."""
 
-    __slots__ = ("_ends",)
+    __slots__ = ()
     core = _Recorded
+    progress = _RecordedProgress
 
-    def __init__(self, *arguments: Any) -> None:
-        super().__init__(*arguments)
-        self._ends: list[float] = []
-
-    def _go(self, to: float, dt: float) -> tuple[float, float]:
-        self._ends.append(to)
-        return super()._go(to, dt)
+    def _ends(self) -> list[float]:
+        progress = self._progress
+        assert isinstance(progress, _RecordedProgress)
+        return progress.ends
 
     def launched(self, t: float) -> None:
         """Start; see `AidedFilter`."""
         if not self.flying:
-            self._ends = []
+            self._ends().clear()
         super().launched(t)
 
     def smoothed(self) -> "Smoothed":
@@ -76,7 +90,7 @@ class RecordedFilter(AidedFilter):
             deviations.append(p[0, 0])
         # the first is the start itself; the others stand at the ends of the intervals
         return Smoothed(
-            np.array(self._ends), np.array(speeds[-2::-1]), np.sqrt(np.maximum(np.array(deviations[-2::-1]), 0.0))
+            np.array(self._ends()), np.array(speeds[-2::-1]), np.sqrt(np.maximum(np.array(deviations[-2::-1]), 0.0))
         )
 
 

@@ -22,7 +22,11 @@ def replay(
         typer.Option("--map", metavar="OURS=THEIRS,...", help="A log's columns, as t=time,fx=-Ay*9.80665; may repeat."),
     ] = None,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of the detector.")
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="For a log: a key of detector, estimator, parts."),
+    ] = None,
+    noise: Annotated[
+        str | None, typer.Option("--noise", metavar="NAME=SD,...", help="Of a log's reading, as p_total=2.4,fx=0.5.")
     ] = None,
     all_launches: Annotated[
         bool, typer.Option("--all-launches", help="Cut a log into its flights, and replay each by itself.")
@@ -44,8 +48,9 @@ def replay(
     """
     plug_in(plugin)
     if len(logs) == 1 and _is_flight(logs[0]):
-        if mapping is not None or settings or all_launches:
-            option = "--map" if mapping is not None else "--set" if settings else "--all-launches"
+        if mapping is not None or settings or noise is not None or all_launches:
+            given = {"--map": mapping is not None, "--set": bool(settings), "--noise": noise is not None}
+            option = next((name for name, there in given.items() if there), "--all-launches")
             raise typer.BadParameter(f"is for logs, and {logs[0]} is a flight's folder", param_hint=option)
         _replay_flight(logs[0], out, plots=not no_plots, overwrite=overwrite, as_json=as_json)
     else:
@@ -53,6 +58,7 @@ def replay(
             logs,
             ",".join(mapping) if mapping else None,
             settings or [],
+            noise,
             out,
             all_launches=all_launches,
             plots=not no_plots,
@@ -99,6 +105,7 @@ def _replay_log(
     logs: list[Path],
     mapping: str | None,
     settings: list[str],
+    noise: str | None,
     out: Path | None,
     *,
     all_launches: bool,
@@ -108,26 +115,24 @@ def _replay_log(
 ) -> None:
     from uavsim.cli.replay_in_lots import in_lots
     from uavsim.logs import is_long, read_log, replay_log
-    from uavsim.scenario import load_scenario
+    from uavsim.logs.aired import with_airspeed
+    from uavsim.logs.airspeed import air_settings
+    from uavsim.studies.low_rates import remark
     from uavsim.views import documents, terminal
     from uavsim.views import log as view
 
-    other = [given for given in settings if not given.strip().startswith("detector.")]
-    if other:
-        raise typer.BadParameter(f"{other[0]!r}: of a log only detector.… can be set", param_hint="--set")
     with user_input():
-        detector = load_scenario("catapult", overrides=settings).detector
+        air = air_settings(settings, noise)
         in_parts = all_launches or is_long(logs)
         recording = None if in_parts else read_log(logs, mapping)
+    detector = air.scenario.detector
+    is_set = any(given.strip().startswith("detector.") for given in settings)
 
     def made(recording: "Recording") -> "Flight":
         flight = replay_log(recording, detector)
-        if settings:
-            from uavsim.studies.low_rates import remark
-
-            said = remark(detector, recording.rate)
-            flight.score["recording"]["remarks"] += [] if said is None else [said]
-        return flight
+        if is_set and (said := remark(detector, recording.rate)):
+            flight.score["recording"]["remarks"].append(said)
+        return with_airspeed(flight, recording, air)
 
     def draw(folder: Path) -> None:
         view.save_plot(replayed, folder / "plots")

@@ -17,10 +17,10 @@ import numpy as np
 
 from uavsim.files import whole
 from uavsim.flight import UNITS, Flight, frame
-from uavsim.logs.doubt import unit_of
+from uavsim.logs.doubt import doubted, unit_of
 from uavsim.logs.informed import sources
 from uavsim.logs.recording import Array, Gap, Recording
-from uavsim.logs.stream import Lot, Shown, Stream, Survey
+from uavsim.logs.stream import Shown, Stream, Survey
 from uavsim.logs.watch import Watch
 from uavsim.onboard import launch
 
@@ -32,7 +32,7 @@ BEFORE, AFTER = 60.0, 300.0  # s of a stretch around a detection
 MOST_STRETCH = 250_000  # readings of one: with all that is made of them 100 MB
 APART = 30.0  # s from one detection to the next, from which that is another flight's
 BINS = 4000  # of the whole log, of each of which the figure has the least and the greatest force
-GROUP = 1_000_000  # readings of a group of the Parquet file that is written
+GROUP = 250_000  # readings of a group of the Parquet file that is written
 
 Replay = Callable[[Recording], Flight]
 
@@ -95,11 +95,13 @@ def replay_long(
     stretch = stream.between(centre - before, centre + after)
     stretch = replace(stretch, remarks=tuple(dict.fromkeys((*stream.remarks, *stretch.remarks))))
     flight = _whole(replay(stretch), survey, watch.detections)
+    said = flight.score["recording"]["remarks"]
     if sources(launch.build(settings, survey.rate), stretch.series):
-        flight.score["recording"]["remarks"].append(
+        said.append(
             "a log that is read in parts is searched by the force alone; what the detector is told besides it is told "
             "where a flight is replayed by itself"
         )
+    said += [remark for remark in doubted(stretch, settings, survey.evidence).remarks if remark not in said]
     tables = {**flight.tables, "accelerometer": thin.table(stretch.readings)}
     spans = spans_of(watch.detections, survey)
     return LongReplay(replace(flight, tables=tables), ("accelerometer",), spans)
@@ -137,28 +139,25 @@ def _passes(
     survey = stream.survey(None if shown is None else lambda share: shown(0.4 * share))
     watch, part = Watch(settings, survey.rate, survey.axes), -1
     thin, greatest, at = _Thin(survey), -np.inf, survey.start
-    factor = unit_of(survey.evidence, stream.mapping or "")
-
-    def as_taken(lot: Lot) -> Lot:
-        return lot if factor == 1.0 else replace(lot, readings=lot.readings * [1.0, factor, factor, factor])
-
+    scale = unit_of(survey.evidence, stream.mapping or "")
     with _table(folder / "accelerometer.parquet") as write:
-        for lot in map(as_taken, stream.lots(None if shown is None else lambda share: shown(0.4 + 0.6 * share))):
+        for lot in stream.lots(None if shown is None else lambda share: shown(0.4 + 0.6 * share)):
             if lot.begins or part < 0:
                 part += 1
                 watch.begin(survey.rates[min(part, len(survey.rates) - 1)])
-            watch.take(lot.readings)
-            thin.take(lot.readings)
-            write(lot)
-            if np.isfinite(lot.readings[:, 1]).any():
-                row = int(np.nanargmax(lot.readings[:, 1]))
-                if lot.readings[row, 1] > greatest:
-                    greatest, at = float(lot.readings[row, 1]), float(lot.readings[row, 0])
+            readings = lot.readings if scale == 1.0 else lot.readings * np.array([1.0, scale, scale, scale])
+            watch.take(readings)
+            thin.take(readings)
+            write(readings)
+            if np.isfinite(readings[:, 1]).any():
+                row = int(np.nanargmax(readings[:, 1]))
+                if readings[row, 1] > greatest:
+                    greatest, at = float(readings[row, 1]), float(readings[row, 0])
     return survey, watch, thin, at
 
 
 @contextmanager
-def _table(path: Path) -> Iterator[Callable[[Lot], None]]:
+def _table(path: Path) -> Iterator[Callable[[Array], None]]:
     """Write readings as they come, as `uavsim.flight` writes them at once."""
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -167,8 +166,8 @@ def _table(path: Path) -> Iterator[Callable[[Lot], None]]:
     schema = pa.schema([pa.field(name, pa.float64(), metadata={"unit": unit}) for name, unit in units.items()])
     kept: list[Array] = []
 
-    def write(lot: Lot) -> None:
-        kept.append(lot.readings)
+    def write(readings: Array) -> None:
+        kept.append(readings)
         if sum(map(len, kept)) >= GROUP:
             flush(writer)
 
@@ -178,7 +177,7 @@ def _table(path: Path) -> Iterator[Callable[[Lot], None]]:
             kept.clear()
             to.write_table(pa.Table.from_arrays([pa.array(column) for column in columns], schema=schema))
 
-    with whole(path) as part, pq.ParquetWriter(part, schema) as writer:
+    with whole(path) as part, pq.ParquetWriter(part, schema, use_dictionary=False) as writer:
         yield write
         flush(writer)
 

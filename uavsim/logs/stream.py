@@ -35,7 +35,6 @@ from uavsim.logs.recording import AXES, GAP, Array, Recording
 from uavsim.logs.stamps import CHANGED, BackwardsError, stamped
 
 MOST_AT_ONCE = 1_500_000  # readings up to which a log is read as a whole: with all that is made of them 500 MB
-MOST_LOOKED_AT = 1_000_000  # readings of which rest is looked for: minutes at 20 kHz, hours at 100 Hz
 LOT = 200_000  # readings of a log that is read as a whole
 MOST_REMARKS = 40
 MOST_GAPS = 1000  # that are kept
@@ -78,7 +77,7 @@ class Survey:
     axes : tuple of str
         Which it holds.
     evidence : Evidence
-        What its first readings show.
+        What the readings show by themselves.
     """
 
     readings: int
@@ -270,8 +269,8 @@ class Stream:
         gaps: list[tuple[float, float]] = []
         axes = np.zeros(3, bool)
         sample: list[Array] = []
-        last = np.nan
         evidence: Evidence | None = None
+        last = np.nan
         try:
             for lot in self.lots(shown):
                 t = lot.readings[:, 0]
@@ -287,21 +286,21 @@ class Stream:
                 for row in np.flatnonzero(steps > GAP * usual * (1.0 + 1e-6))[: MOST_GAPS - len(gaps)]:
                     gaps.append((float(t[row] - steps[row]), float(t[row])))
                 axes |= np.isfinite(lot.readings[:, 1:]).any(axis=0)
-                evidence = Evidence(1.0 / (usual or 1.0)) if evidence is None else evidence
-                if evidence.rows < MOST_LOOKED_AT:
-                    evidence.add(lot.readings)
+                if evidence is None:
+                    evidence = Evidence(1.0 / usual if usual else 1.0)
+                evidence.add(lot.readings)
                 if len(sample) < 100:
                     sample.append(lot.readings[:: max(1, t.size // 200), 1:])
                 last = float(t[-1])
         except BackwardsError as error:
             raise ValueError(f"{names}: {error}; map t=… to a column that rises") from None
         with named(names):
-            if not readings:
+            if evidence is None:
                 raise ValueError("no row has a time: map t=…")
             rates = [1.0 / _middle(part) if _middle(part) else np.inf for part in intervals]
             self._check(rates, np.vstack(sample))
         held = tuple(axis for axis, is_held in zip(AXES, axes.tolist(), strict=True) if is_held)
-        return Survey(readings, start, end, duration, rates, gaps, held, evidence or Evidence(1.0))
+        return Survey(readings, start, end, duration, rates, gaps, held, evidence)
 
     def _check(self, rates: Sequence[float], sample: Array) -> None:
         """Refuse what is no time, or no m/s²."""

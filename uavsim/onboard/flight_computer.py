@@ -287,6 +287,13 @@ class FlightComputer:
             self._note(t, event, channel=channel, **({"kind": kind} if kind else {}))
         self._news.clear()
 
+    def airborne(self, t: float) -> None:
+        """Be told that the aircraft is in flight at `t`, s, without a launch that was recognised."""
+        if self.state == "waiting":
+            self._note(t, "in_flight")
+            self.estimator.airborne(t)
+            self.state, self._last_estimate = "flying", t
+
     # -- launch ------------------------------------------------------------------------------------------------------
 
     def _rest(self, t: float, fx: float, fy: float, fz: float) -> None:

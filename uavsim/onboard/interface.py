@@ -105,6 +105,9 @@ class Estimator:
     def launched(self, t: float) -> None:
         """Be told that a launch has been recognised at `t`, s, with the reading of specific force taken last."""
 
+    def airborne(self, t: float) -> None:
+        """Be told that the aircraft is in flight at `t`, s, without a launch that was recognised."""
+
     def doubts(self, t: float) -> tuple[str, ...] | None:
         """Say why it is not ready to be launched at `t`, s, in a sentence each: "total port: no reading comes".
 

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from uavsim.airdata import GAS_CONSTANT_DRY_AIR
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
-from uavsim.onboard.airspeed.aided import AROUND
 from uavsim.onboard.airspeed.air import SLOWEST
 from uavsim.onboard.airspeed.energy import SEVEN_R
 from uavsim.onboard.airspeed.energy_model import (
@@ -36,6 +35,7 @@ from uavsim.onboard.airspeed.energy_model import (
     transition,
 )
 from uavsim.onboard.airspeed.gust import gust_density
+from uavsim.onboard.airspeed.hand_over import AROUND
 from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.truth import STANDARD_GRAVITY
 

@@ -14,6 +14,7 @@ import numpy as np
 from uavsim.onboard.launch.settings import DetectorSettings, if_known
 from uavsim.settings import read
 from uavsim.truth import STANDARD_GRAVITY
+from uavsim.views import log_airspeed
 from uavsim.views.curves import thin
 from uavsim.views.figure import BLACK, BLUE, GREY, LIGHT, RED, SKY, label, legend, save, sheet
 from uavsim.views.marks import Mark, flag_all
@@ -50,11 +51,13 @@ def lines(flight: "Flight") -> list[str]:
     said += [f"Warning: {remark}" for remark in of["remarks"]]
     said += [f"Warning: {flight.score['reason']}; what comes after is not read"] if flight.score["reason"] else []
     kind = flight.score["launch"]["detector"]
+    air = log_airspeed.lines(flight)
     if not found:
         none = f"{kind}: no launch detected; the greatest f_x is {_greatest(flight)}"
-        return [*said, none, *(_why(of["unseen"]) if of["unseen"] else ())]
+        return [*said, none, *(_why(of["unseen"]) if of["unseen"] else ()), *air]
     said += [f"{kind}: launch detected at {t:.4f} s" for t in found[:MOST_LINES]]
-    return said if len(found) <= MOST_LINES else [*said, f"… and {len(found) - MOST_LINES} more, in events.json"]
+    more = [f"… and {len(found) - MOST_LINES} more, in events.json"] if len(found) > MOST_LINES else []
+    return [*said, *more, *air]
 
 
 def _why(of: Mapping[str, Any]) -> list[str]:
@@ -82,8 +85,11 @@ def _greatest(flight: "Flight") -> str:
 
 
 def save_plot(flight: "Flight", folder: Path) -> Path:
-    """Draw `launch.png` into a folder, which is made."""
+    """Draw `launch.png`, and `airspeed.png` where there is one, into a folder, which is made."""
     folder.mkdir(parents=True, exist_ok=True)
+    airspeed = log_airspeed.draw(flight)
+    if airspeed is not None:
+        save(airspeed, folder / "airspeed.png")
     return save(draw(flight), folder / "launch.png")
 
 

@@ -15,6 +15,7 @@ from uavsim.onboard.airspeed.head_errors import HeadErrors
 from uavsim.onboard.plausible import LEAST_TEMPERATURE, MOST_TEMPERATURE
 
 ANY = (-inf, inf)  # a range without ends
+MODEL = 0.1  # Pa, the least standard deviation of a reading: what the model is off by, 0.1 ms of the stroke's rise
 NO_ERRORS = HeadErrors()  # both ports read their own pressures
 
 
@@ -155,3 +156,14 @@ def within(ends: tuple[float, float], step: float, least: float, most: float) ->
         What is plausible at all (`uavsim.onboard.plausible`).
     """
     return max(least, ends[0] + 0.5 * step), min(most, ends[1] - 0.5 * step)
+
+
+def reading_variances(noise: NoiseModel) -> tuple[float, float]:
+    """Return those of a reading of the total channel and of the static pressure, Pa², as the aided filter has them."""
+    return max(noise.total_sd, MODEL) ** 2, max(noise.static_sd, MODEL) ** 2
+
+
+def pair_variance(noise: NoiseModel) -> float:
+    """Return the variance of one reading's pressure difference, Pa²; a differential sensor reads it itself."""
+    total, static = reading_variances(noise)
+    return total + (0.0 if noise.differential else static)

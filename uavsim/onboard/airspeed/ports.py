@@ -17,7 +17,7 @@ from math import inf, nan
 from uavsim.onboard.airspeed.air import SLOWEST, Air
 from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.gust import GRAVITY
-from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.interface import NoiseModel, reading_variances
 from uavsim.onboard.airspeed.rail import rows_allowed
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.watch import StaticWatch, TotalWatch
@@ -45,8 +45,6 @@ class Ports:
         Of the filter; it changes as the flight goes on.
     noise : NoiseModel
         What is believed of the sensors.
-    total_variance, static_variance : float
-        Of a reading's noise, Pa².
 
     Attributes
     ----------
@@ -88,11 +86,9 @@ class Ports:
         "total",
     )  # fmt: skip
 
-    def __init__(
-        self, aided: AidedSettings, air: Air, noise: NoiseModel, total_variance: float, static_variance: float
-    ) -> None:
+    def __init__(self, aided: AidedSettings, air: Air, noise: NoiseModel) -> None:
         self._aided, self._air, self._noise = aided, air, noise
-        self._total_variance, self._static_variance = total_variance, static_variance
+        self._total_variance, self._static_variance = reading_variances(noise)
         self.news: list[News] = []
         self.begin()
 
