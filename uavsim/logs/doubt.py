@@ -51,10 +51,7 @@ def doubted(recording: Recording, settings: DetectorSettings, evidence: Evidence
     seen = collected(recording.readings, recording.rate) if evidence is None else evidence
     rest = seen.rest()
     remarks = [*_unit(rest, recording), *_axes(rest), *_repeats(seen), *_counted(recording), *_others(recording)]
-    factor = unit_of(seen, recording.mapping)
-    if factor != 1.0:
-        readings = recording.readings * [1.0, factor, factor, factor]
-        recording = replace(recording, readings=readings)
+    recording = taken(recording, seen)
     remarks += _range(recording, settings)
     return replace(recording, remarks=(*recording.remarks, *remarks))
 
@@ -67,6 +64,13 @@ def scaled(mapping: str) -> bool:
 def is_in_feet(rest: Rest) -> bool:
     """Whether rest reads 1 g in ft/s²."""
     return rest.share(G0, ONE_G) < SOME and rest.share(G0 / FOOT, IN_FEET) >= MOST
+
+
+def taken(recording: Recording, evidence: Evidence | None = None) -> Recording:
+    """Return a recording in m/s²: as it is, or scaled if it is taken to be in ft/s²."""
+    seen = collected(recording.readings, recording.rate) if evidence is None else evidence
+    factor = unit_of(seen, recording.mapping)
+    return recording if factor == 1.0 else replace(recording, readings=recording.readings * ([1.0] + [factor] * 3))
 
 
 def unit_of(evidence: Evidence, mapping: str) -> float:
