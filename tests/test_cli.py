@@ -360,7 +360,7 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
         ("replay nothing.csv", "nothing.csv: there is no such file"),
         ("replay full full", "full: there is no such file"),
         ("replay file", "file: not a table of comma-separated values"),
-        ("replay log.csv", "log.csv: lacks t, fx, fy, fz; it has time, ax, p; say which is which with --map t=…,fx=…"),
+        ("replay log.csv", "log.csv: 2 rows with a time are too few; at least 10 are needed"),
         ("replay log.csv --map t=time,fx=ay", "log.csv: has no column 'ay'; it has time, ax, p"),
         ("replay log.csv --map t=time,fx=ax,fy=ax,fz=p", "log.csv: 2 rows with a time are too few"),
         ("replay log.csv --map time", "'time': give it as ours=theirs"),

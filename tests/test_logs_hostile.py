@@ -443,10 +443,15 @@ def test_a_file_that_may_not_be_read_is_one_line(tmp_path: Path, monkeypatch: py
 
 def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
     """A file with a hole: it takes no place on the disk."""
-    path = tmp_path / "a.csv"
+    path = tmp_path / "a.ulg"
     with path.open("wb") as file:
+        file.write(b"ULog\x01\x12\x35")
         file.truncate(3_000_000_000)
-    assert refused(lambda: read_log([path])).endswith("a.csv: has 3 GB; at most 1 GB are read")
+    assert "a.ulg: has 3 GB; of its kind at most 1 GB are read" in refused(lambda: read_log([path]))
+    with path.open("wb") as file:
+        file.write(b"\x1f\x8b\x08")
+        file.truncate(3_000_000_000)
+    assert "a.ulg: has 3 GB; of its kind at most 1 GB are read" in refused(lambda: read_log([path]))
 
 
 def zipped(**inside: bytes) -> bytes:
