@@ -353,5 +353,7 @@ def test_inav_has_its_satellites_where_the_log_has_them() -> None:
     tells = {"north_speed": (t, speed), "east_speed": (t, 0.0 * speed), "satellites": (t, 0.0 * t + 8.0)}
     assert told(recorded(readings), kind="inav")[0] == []
     assert told(recorded(readings, **tells), kind="inav")[0][0] == pytest.approx(3.44, abs=0.02)
+    ground = {"ground_speed": (t, speed), "satellites": tells["satellites"]}
+    assert told(recorded(readings, **ground), kind="inav")[0][0] == pytest.approx(3.44, abs=0.02)
     tells["satellites"] = (t, 0.0 * t + 5.0)
     assert told(recorded(readings, **tells), kind="inav")[0] == []
