@@ -365,7 +365,7 @@ class ParquetTable:
     def _opened(self, **options: Any) -> "Iterator[pq.ParquetFile]":
         import pyarrow.parquet as pq
 
-        with self._held.open() as file, pq.ParquetFile(file, **options) as parquet:
+        with self._held.open() as file, pq.ParquetFile(file, pre_buffer=False, **options) as parquet:
             yield parquet
 
 

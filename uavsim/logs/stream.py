@@ -290,7 +290,7 @@ class Stream:
                     evidence = Evidence(1.0 / usual if usual else 1.0)
                 evidence.add(lot.readings)
                 if len(sample) < 100:
-                    sample.append(lot.readings[:: max(1, t.size // 200), 1:])
+                    sample.append(lot.readings[:: max(1, t.size // 200), 1:].copy())  # else it holds the lot
                 last = float(t[-1])
         except BackwardsError as error:
             raise ValueError(f"{names}: {error}; map t=… to a column that rises") from None
