@@ -214,6 +214,19 @@ def test_readings_that_repeat_through_the_launch_are_told(rate: float) -> None:
     assert "readings repeat for 1.3 s from 2.900 s on" in said or "readings repeat for 1.28 s from 2.900 s on" in said
 
 
+def test_one_axis_that_repeats_through_the_launch_is_told() -> None:
+    readings = made()
+    readings[580:840, 1] = readings[580, 1]
+    found, said = told(recorded(readings))
+    assert found == []
+    assert "fx repeats for 1.3 s from 2.900 s on (260 rows)" in said
+    cut = np.split(readings, [3, 585, 600, 839])
+    parts = Evidence(200.0)
+    for part in cut:
+        parts.add(part)
+    assert [(spell.start, spell.rows) for spell in parts.stuck["fx"]] == [(2.9, 260)]
+
+
 def test_coarse_readings_of_a_quiet_sensor_are_no_repetition() -> None:
     readings = made(sigma=0.02)
     readings[:, 1:] = np.round(readings[:, 1:] / 0.3) * 0.3
@@ -246,7 +259,7 @@ def test_evidence_does_not_depend_on_how_it_is_cut() -> None:
         parts.add(block)
     assert parts.repeats == whole.repeats
     assert [(spell.start, spell.rows) for spell in whole.repeats] == [(2.5, 260)]
-    assert parts.changes == whole.changes
+    assert parts.stuck == whole.stuck == {}
     np.testing.assert_array_equal(parts.rest().vectors, whole.rest().vectors)
 
 
@@ -340,5 +353,7 @@ def test_inav_has_its_satellites_where_the_log_has_them() -> None:
     tells = {"north_speed": (t, speed), "east_speed": (t, 0.0 * speed), "satellites": (t, 0.0 * t + 8.0)}
     assert told(recorded(readings), kind="inav")[0] == []
     assert told(recorded(readings, **tells), kind="inav")[0][0] == pytest.approx(3.44, abs=0.02)
+    ground = {"ground_speed": (t, speed), "satellites": tells["satellites"]}
+    assert told(recorded(readings, **ground), kind="inav")[0][0] == pytest.approx(3.44, abs=0.02)
     tells["satellites"] = (t, 0.0 * t + 5.0)
     assert told(recorded(readings, **tells), kind="inav")[0] == []

@@ -84,6 +84,24 @@ def test_a_long_log_is_replayed_as_a_short_one(tmp_path: Path, kind: str) -> Non
 
 
 @pytest.mark.usefixtures("small")
+def test_a_long_log_in_feet_is_taken_as_such_from_its_first_reading_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Throws whose numbers are above those of a launch: none is one, and the table that is written is in m/s²."""
+    table = flights()
+    table["fx"] = 0.4 * (table["fx"] - 1.5) + 1.5
+    feet = table.assign(**{axis: table[axis] / 0.3048 for axis in ("fx", "fy", "fz")})
+    path = written(feet, tmp_path / "a.csv")
+    monkeypatch.setattr(sys, "argv", ["uavsim", "replay", str(path), "--no-plots", "--out", str(tmp_path / "out")])
+    with pytest.raises(SystemExit):
+        main()
+    flight = load(tmp_path / "out")
+    assert flight.score["recording"]["detections"] == []
+    assert any("ft/s²" in remark for remark in flight.score["recording"]["remarks"])
+    np.testing.assert_allclose(flight.accelerometer["fx"].to_numpy(), table["fx"].to_numpy(), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.usefixtures("small")
 def test_a_clock_that_begins_anew_is_cut_in_lots_too(tmp_path: Path) -> None:
     one, other = frame(200.0, 0.0, 40.0), frame(200.0, 0.0, 40.0, onset=9.0)
     path = written(pd.concat([one, other]), tmp_path / "a.parquet")

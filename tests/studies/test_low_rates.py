@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from uavsim.onboard.launch import DetectorSettings
-from uavsim.studies.low_rates import alarms, bound, decides_alone, delays, lowpass, remark, slowed
+from uavsim.studies import low_rates
+from uavsim.studies.low_rates import Alarms, alarms, bound, decides_alone, delays, lowpass, remark, slowed
 
 OURS = DetectorSettings()
 QUICK = replace(OURS, adaptive=replace(OURS.adaptive, confirm=False))
@@ -43,6 +44,22 @@ def test_to_decide_on_one_reading_costs_alarms() -> None:
     assert plain[1].rate > 5.0 * plain[0].rate > 0.0
     assert remark(OURS, 50.0) is None
     assert remark(QUICK, 1000.0) is None
+
+
+def test_what_it_costs_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def counted(detectors: object, rate: float, hours: float, *, seed: int, filtered: bool) -> list[Alarms]:
+        assert (rate, hours) == (1000.0 / 18.0, 1.0)
+        return [Alarms(0 if filtered else 1234, hours)]
+
+    monkeypatch.setattr(low_rates, "alarms", counted)
+    said = remark(QUICK, 57.0)
+    assert said is not None
+    for words in (
+        "adaptive-cusum decides on one reading at 57 Hz",
+        "1.23e+03 alarms an hour",
+        ", 0 if what is above 22.2",
+    ):
+        assert words in said
 
 
 def test_delays_at_50_hz_and_the_bound() -> None:

@@ -15,6 +15,7 @@ from uavsim.airspeeds import of_pressures
 from uavsim.failure import FAILED
 from uavsim.flight import Flight, frame_of_floats, frame_of_rows
 from uavsim.logs.airspeed import Aired, AirSettings, air_of
+from uavsim.logs.doubt import taken
 from uavsim.logs.over_ground import over_ground
 from uavsim.logs.recording import Array, Recording, Series
 from uavsim.misleading import FLAG, LOST, spells
@@ -40,6 +41,7 @@ def with_airspeed(flight: Flight, recording: Recording, settings: AirSettings) -
         With the tables 'air_data' and 'estimate', the events of the flight computer, and a score that has the figures
         of an airspeed; without pressures it is the flight that was given, with a remark that says what is lacking.
     """
+    recording = taken(recording)
     launches = list(flight.score["recording"]["detections"])
     found = air_of(recording, settings, launches)
     if found is None:

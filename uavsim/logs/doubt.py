@@ -51,10 +51,7 @@ def doubted(recording: Recording, settings: DetectorSettings, evidence: Evidence
     seen = collected(recording.readings, recording.rate) if evidence is None else evidence
     rest = seen.rest()
     remarks = [*_unit(rest, recording), *_axes(rest), *_repeats(seen), *_counted(recording), *_others(recording)]
-    if is_in_feet(rest) and not scaled(recording.mapping):
-        readings = recording.readings.copy()
-        readings[:, 1:] *= FOOT
-        recording = replace(recording, readings=readings)
+    recording = taken(recording, seen)
     remarks += _range(recording, settings)
     return replace(recording, remarks=(*recording.remarks, *remarks))
 
@@ -67,6 +64,18 @@ def scaled(mapping: str) -> bool:
 def is_in_feet(rest: Rest) -> bool:
     """Whether rest reads 1 g in ft/s²."""
     return rest.share(G0, ONE_G) < SOME and rest.share(G0 / FOOT, IN_FEET) >= MOST
+
+
+def taken(recording: Recording, evidence: Evidence | None = None) -> Recording:
+    """Return a recording in m/s²: as it is, or scaled if it is taken to be in ft/s²."""
+    seen = collected(recording.readings, recording.rate) if evidence is None else evidence
+    factor = unit_of(seen, recording.mapping)
+    return recording if factor == 1.0 else replace(recording, readings=recording.readings * ([1.0] + [factor] * 3))
+
+
+def unit_of(evidence: Evidence, mapping: str) -> float:
+    """Return what a log's unit of force is taken for, m/s²: 0.3048 if rest reads 1 g in ft/s² and no map says else."""
+    return FOOT if is_in_feet(evidence.rest()) and not scaled(mapping) else 1.0
 
 
 # -- unit ------------------------------------------------------------------------------------------------------------
@@ -136,16 +145,16 @@ def _axes(rest: Rest) -> Iterator[str]:
 
 
 def _repeats(seen: Evidence) -> Iterator[str]:
-    """Tell spells in which readings repeat."""
-    spells = seen.repeats
-    if not spells:
-        return
-    longest = max(spells, key=lambda spell: spell.end - spell.start)
-    more = f", the longest of {len(spells)} such spells" if len(spells) > 1 else ""
-    yield (
-        f"readings repeat for {longest.end - longest.start:.3g} s from {longest.start:.3f} s on ({longest.rows} rows)"
-        f"{more}: what happened meanwhile is not in the log, and no launch can be seen in it"
-    )
+    """Tell spells in which readings repeat, all axes or one of them."""
+    for what, spells in (("readings repeat", seen.repeats), *((f"{a} repeats", of) for a, of in seen.stuck.items())):
+        if not spells:
+            continue
+        longest = max(spells, key=lambda spell: spell.end - spell.start)
+        more = f", the longest of {len(spells)} such spells" if len(spells) > 1 else ""
+        yield (
+            f"{what} for {longest.end - longest.start:.3g} s from {longest.start:.3f} s on ({longest.rows} rows)"
+            f"{more}: what happened meanwhile is not in the log, and no launch can be seen in it"
+        )
 
 
 def backwards(recording: Recording, settings: DetectorSettings, detections: Sequence[float]) -> list[str]:

@@ -78,72 +78,47 @@ class Rest:
 
 
 @dataclass(slots=True, eq=False)
-class Evidence:
-    """What is collected of a log's readings.
+class Repeats:
+    """Follows rows that say what the row before said.
 
     Attributes
     ----------
-    rate : float
-        Median rate, Hz.
     rows, changes : int
         How many rows there are, and how many differ from the one before.
     longest : list of Still
         Spells of rows that repeat, of some length.
     """
 
-    rate: float
     rows: int = 0
     changes: int = 0
     longest: list[Still] = field(default_factory=list)
-    _blocks: list[Array] = field(default_factory=list)
-    _left: Array = field(default_factory=lambda: np.empty((0, 4)))
     _last: Array | None = None
     _since: Still | None = None
 
-    def add(self, readings: Array) -> None:
-        """Take the next rows: t, s, and fx, fy, fz, m/s²; shape (n, 4)."""
-        if not len(readings):
-            return
-        self._watch(readings)
-        size = max(FEWEST, round(BLOCK * self.rate))
-        rows = np.concatenate((self._left, readings)) if len(self._left) else readings
-        whole = len(rows) // size * size
-        self._left = rows[whole:].copy()
-        if whole:
-            self._blocks.append(_blocks(rows[:whole].reshape(-1, size, 4)))
-
-    def _watch(self, readings: Array) -> None:
-        """Follow rows that repeat."""
-        force = readings[:, 1:]
-        before = np.vstack((np.full((1, 3), np.nan) if self._last is None else self._last, force[:-1]))
-        same = ((force == before) | (np.isnan(force) & np.isnan(before))).all(axis=1) & np.isfinite(force).any(axis=1)
-        self.rows += len(readings)
+    def add(self, t: Array, values: Array) -> None:
+        """Take the next rows: times, s, and what they say, shape (n, columns)."""
+        before = np.vstack((np.full((1, values.shape[1]), np.nan) if self._last is None else self._last, values[:-1]))
+        same = ((values == before) | (np.isnan(values) & np.isnan(before))).all(axis=1) & ~np.isnan(values).all(axis=1)
+        self.rows += t.size
         self.changes += int(np.count_nonzero(~same))
-        t = readings[:, 0]
-        edges = [0, *(np.flatnonzero(~same[1:]) + 1).tolist(), len(readings)]
+        edges = np.concatenate(([0], np.flatnonzero(~same[1:]) + 1, [t.size]))
         lengths = np.diff(edges)
-        least = max(3, STILL_ROWS - 1)
-        for i in {*np.flatnonzero(lengths >= least).tolist(), 0, len(lengths) - 1}:
-            a, b = edges[i], edges[i + 1]
-            spell = Still(float(t[a]), float(t[b - 1]), int(lengths[i]), tuple(force[a].tolist()))
+        for i in sorted({*np.flatnonzero(lengths >= STILL_ROWS).tolist(), 0, lengths.size - 1}):
+            first, stop = int(edges[i]), int(edges[i + 1])
+            spell = Still(float(t[first]), float(t[stop - 1]), stop - first, tuple(values[first].tolist()))
             if i == 0 and same[0] and self._since is not None:
                 spell = replace(self._since, end=spell.end, rows=self._since.rows + spell.rows)
                 if self.longest and self.longest[-1] == self._since:
                     self.longest.pop()
             if spell.rows >= STILL_ROWS and spell.end - spell.start >= STILL and len(self.longest) < MOST_STILL:
                 self.longest.append(spell)
-            if b == len(readings):
+            if stop == t.size:
                 self._since = spell
-        self._last = force[-1].copy()
+        self._last = values[-1].copy()
 
     @property
-    def held(self) -> float:
-        """For how many rows a reading is held on average."""
-        return self.rows / max(self.changes, 1)
-
-    @property
-    def repeats(self) -> list[Still]:
-        """Spells in which readings repeat for far longer than is usual in this log, in the order of time.
+    def spells(self) -> list[Still]:
+        """Spells in which rows repeat for far longer than is usual, in the order of time.
 
         Where several say the same it is the step of a coarse sensor that rests.
         """
@@ -151,6 +126,69 @@ class Evidence:
         found = [spell for spell in self.longest if spell.rows >= STILL_TIMES * usual]
         often = Counter(repr(spell.reads) for spell in self.longest)
         return sorted((spell for spell in found if often[repr(spell.reads)] == 1), key=lambda spell: spell.start)
+
+
+@dataclass(slots=True, eq=False)
+class Evidence:
+    """What is collected of a log's readings.
+
+    Attributes
+    ----------
+    rate : float
+        Median rate, Hz.
+    """
+
+    rate: float
+    _all: Repeats = field(default_factory=Repeats)
+    _each: tuple[Repeats, ...] = field(default_factory=lambda: tuple(Repeats() for _ in AXES))
+    _least: Array = field(default_factory=lambda: np.full(len(AXES), np.inf))
+    _most: Array = field(default_factory=lambda: np.full(len(AXES), -np.inf))
+    _blocks: list[Array] = field(default_factory=list)
+    _left: Array = field(default_factory=lambda: np.empty((0, 4)))
+
+    @property
+    def rows(self) -> int:
+        """How many there were."""
+        return self._all.rows
+
+    def add(self, readings: Array) -> None:
+        """Take the next rows: t, s, and fx, fy, fz, m/s²; shape (n, 4)."""
+        if not len(readings):
+            return
+        t, force = readings[:, 0], readings[:, 1:]
+        self._all.add(t, force)
+        for i, axis in enumerate(self._each):
+            axis.add(t, force[:, i : i + 1])
+        self._least, self._most = (
+            np.fmin(self._least, np.fmin.reduce(force)),
+            np.fmax(self._most, np.fmax.reduce(force)),
+        )
+        size = max(FEWEST, round(BLOCK * self.rate))
+        rows = np.concatenate((self._left, readings)) if len(self._left) else readings
+        whole = len(rows) // size * size
+        self._left = rows[whole:].copy()
+        if whole:
+            self._blocks.append(_blocks(rows[:whole].reshape(-1, size, 4)))
+
+    @property
+    def repeats(self) -> list[Still]:
+        """Spells in which all axes repeat what they said before."""
+        return self._all.spells
+
+    @property
+    def stuck(self) -> dict[str, list[Still]]:
+        """Spells in which one axis repeats while others live, by its name; one that is at its extreme is clipped."""
+        whole, found = self.repeats, {}
+        for axis, of, least, most in zip(AXES, self._each, self._least.tolist(), self._most.tolist(), strict=True):
+            spells = [
+                spell
+                for spell in of.spells
+                if spell.reads[0] not in (least, most, 0.0)
+                and not any(other.start <= spell.end and spell.start <= other.end for other in whole)
+            ]
+            if spells and any(other is not of and other.changes > 1 for other in self._each):
+                found[axis] = spells
+        return found
 
     def rest(self) -> Rest:
         """Return what quiet blocks read whose mean is known well enough; along axes that the log has."""

@@ -32,9 +32,10 @@ def telling(detector: Any, t: Array, series: Mapping[str, Series]) -> Tell | Non
     if hasattr(detector, "attitude") and {"roll", "pitch"} <= set(series):
         roll, pitch = (_lines(series[name], t).tolist() for name in ("roll", "pitch"))
         tells.append(lambda k: detector.attitude(roll[k], pitch[k]))
-    if hasattr(detector, "satellites") and {"north_speed", "east_speed", "satellites"} <= set(series):
-        north, east, number = (_last(series[name], t) for name in ("north_speed", "east_speed", "satellites"))
-        speeds, numbers = np.hypot(north, east).tolist(), number.tolist()
+    if hasattr(detector, "satellites") and _speed_of(series):
+        told = [_last(series[name], t) for name in _speed_of(series)]
+        speeds = (np.hypot(*told) if len(told) > 1 else told[0]).tolist()
+        numbers = _last(series["satellites"], t).tolist()
         tells.append(lambda k: detector.satellites(speeds[k], numbers[k]))
     if not tells:
         return None
@@ -51,9 +52,16 @@ def sources(detector: Any, series: Mapping[str, Series]) -> list[str]:
     said = []
     if hasattr(detector, "attitude") and {"roll", "pitch"} <= set(series):
         said.append(f"the detector is told the log's attitude, {series['pitch'].source}")
-    if hasattr(detector, "satellites") and {"north_speed", "east_speed", "satellites"} <= set(series):
-        said.append(f"the detector is told the log's satellites, {series['north_speed'].source}")
+    if hasattr(detector, "satellites") and (speed := _speed_of(series)):
+        said.append(f"the detector is told the log's satellites, {series[speed[0]].source}")
     return said
+
+
+def _speed_of(series: Mapping[str, Series]) -> tuple[str, ...]:
+    """Which series tell the speed over ground; none where the number of satellites is not told."""
+    ways = ((), ("north_speed", "east_speed"), ("ground_speed",))
+    found = [names for names in ways if {*names, "satellites"} <= set(series)]
+    return found[-1] if found else ()
 
 
 def _sound(series: Series) -> tuple[Array, Array]:

@@ -17,7 +17,8 @@ import numpy as np
 
 from uavsim.files import whole
 from uavsim.flight import UNITS, Flight, frame
-from uavsim.logs.doubt import FOOT, doubted, is_in_feet, scaled
+from uavsim.logs.doubt import doubted, unit_of
+from uavsim.logs.informed import sources
 from uavsim.logs.recording import Array, Gap, Recording
 from uavsim.logs.stream import Shown, Stream, Survey
 from uavsim.logs.watch import Watch
@@ -96,6 +97,11 @@ def replay_long(
     stretch = replace(stretch, remarks=tuple(dict.fromkeys((*stream.remarks, *stretch.remarks))))
     flight = _whole(replay(stretch), survey, watch.detections)
     said = flight.score["recording"]["remarks"]
+    if sources(launch.build(settings, survey.rate), stretch.series):
+        said.append(
+            "a log that is read in parts is searched by the force alone; what the detector is told besides it is told "
+            "where a flight is replayed by itself"
+        )
     said += [remark for remark in doubted(stretch, settings, survey.evidence).remarks if remark not in said]
     tables = {**flight.tables, "accelerometer": thin.table(stretch.readings)}
     spans = spans_of(watch.detections, survey)
@@ -134,7 +140,7 @@ def _passes(
     survey = stream.survey(None if shown is None else lambda share: shown(0.4 * share))
     watch, part = Watch(settings, survey.rate, survey.axes), -1
     thin, greatest, at = _Thin(survey), -np.inf, survey.start
-    scale = FOOT if is_in_feet(survey.evidence.rest()) and not scaled(stream.mapping or "") else 1.0
+    scale = unit_of(survey.evidence, stream.mapping or "")
     with _table(folder / "accelerometer.parquet") as write:
         for lot in stream.lots(None if shown is None else lambda share: shown(0.4 + 0.6 * share)):
             if lot.begins or part < 0:

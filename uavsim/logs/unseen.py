@@ -191,7 +191,7 @@ def _other_axes(
 ) -> Iterator[Nearest]:
     """Try the same rule along the axes that it does not read."""
     for axis, near in places.items():
-        if axis not in axes and settings.axes != "any":
+        if axis not in axes and settings.axes != "any" and if_known(settings).ours:
             other = replace(settings, axes=(axis,))  # type: ignore[arg-type]
             times = [(_first(other, recording.rate, [one]), one) for one in near]
             found = min((t for t, one in times if t is not None and _from_rest(one, t)), default=None)
