@@ -202,17 +202,17 @@ class Ports:
         else:
             self.tell(t, "airspeed_fault", channel, kind)
 
-    def never_moved(self, t: float, energy: EnergyFilter, rest: float, lost: float, density: float) -> None:
-        """Flag a static port that has been shut since before the launch; `rest` and `lost` as of `FirstClimb`."""
-        self.static.flag_at_rest(energy, t, (rest, self._static_variance), lost, density)
+    def never_moved(self, t: float, energy: EnergyFilter, rest: float, risen: float, density: float) -> None:
+        """Flag a static port that has been shut since before the launch; `rest` and `risen` as of `FirstClimb`."""
+        self.static.flag_at_rest(energy, t, (rest, self._static_variance), risen, density)
         energy.read_relative(False)
         self.misses = 0
         self.total.port.restart()
         self.tell(t, "airspeed_fault", "static", "frozen")
 
-    def not_risen(self, t: float, energy: EnergyFilter, kind: str, held: float, speed: tuple[float, float]) -> None:
-        """Flag a total port that has not risen in the stroke; the pressure in it, Pa, and V with its variance."""
-        self.total.flag_in_stroke(energy, t, (held, self._total_variance), speed)
+    def not_risen(self, t: float, energy: EnergyFilter, kind: str, speed: tuple[float, float]) -> None:
+        """Flag a total port that has not risen in the stroke; V and its variance. What is shut in shows from now on."""
+        self.total.flag_in_stroke(energy, t, (nan, self._total_variance), speed)
         self.tell(t, "airspeed_fault", "total", kind)
         if kind == "swapped" and not self.static.faulty and not self._noise.differential:
             self._flag_static(t, energy, kind)

@@ -359,9 +359,15 @@ class TotalWatch:
     def flag_in_stroke(
         self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
     ) -> None:
-        """Flag a port that has not risen in the stroke; the pressure in it, and V by the force, with their variance."""
+        """Flag a port that has not risen in the stroke.
+
+        `held` and `speed` are the pressure in it (`Readmission.flag`), Pa, and V by the force, m/s, each with its
+        variance. Where gusts are declared, it has to show them.
+        """
         self.port.back.flag(t, *held)
         self.faulty = self._astray = self.coasts = True
+        self._silent = self._declared
+        self._smooth.flag(t)
         self.undecided, self._bias = False, 0.0
         energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
@@ -484,12 +490,12 @@ class StaticWatch:
         )
 
     def flag_at_rest(
-        self, energy: EnergyFilter, t: float, held: tuple[float, float], lost: float, density: float
+        self, energy: EnergyFilter, t: float, held: tuple[float, float], risen: float, density: float
     ) -> None:
-        """Flag a port that was shut before the launch: half of what V has lost is the height that it hides."""
+        """Flag a port that was shut before the launch, and the height that it hides, m."""
         self.faulty = self.shut = True
         self._back.flag(t, *held)
-        hidden = -0.5 * density * max(energy.v, 1.0) * lost
+        hidden = density * GRAVITY * risen
         energy.leave_static(
             static=(held[0] - hidden, hidden * hidden),
             slope=(energy.s, 1.0),
