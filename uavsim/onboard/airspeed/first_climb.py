@@ -50,9 +50,9 @@ SAID = 3.0  # nats that one reading may say at the most: no spike decides. By ha
 # share of the height on the rail that is not known: elevation and way. By hand. Off the rail the path bends by what
 # nobody on board knows, and all of the height that the rail points to beyond its end is unknown
 UNSURE = 0.15
-# standard deviations by which the climb that f_z says must be more than the port has moved. By hand: with the 6 Pa that
-# it may have moved, a shut port is named at 5 m of height off a rail of 12°
-SURE = 3.0
+# standard deviations by which the climb that f_z says must be more than the port has moved. By hand: at 3 a shut port
+# off a rail of 12° was named at 2 or 3 m of height, sooner than the 10 m that are asked; 5 leaves a live one more room
+SURE = 5.0
 # Pa/(m/s) of V: a live port's least standard deviation from what the climb says, as `climb.LEAST_OF_V`
 LEAST_OF_V = 0.1
 
@@ -75,8 +75,8 @@ class FirstClimb:
     """
 
     __slots__ = (
-        "_beyond", "_climbed_for", "_felt", "_height", "_level_for", "_mean", "_moved_for", "_need", "_odds", "_reference", "_slope",
-        "_variance", "hidden", "lost", "open", "rest", "risen",
+        "_beyond", "_climbed_for", "_felt", "_height", "_level_for", "_mean", "_moved_for", "_need", "_odds",
+        "_reference", "_slope", "_variance", "hidden", "lost", "open", "rest", "risen",
     )  # fmt: skip
 
     def __init__(self) -> None:

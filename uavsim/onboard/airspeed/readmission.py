@@ -1,10 +1,11 @@
 """When a port that was flagged is believed again: it lives, and it agrees.
 
 It lives when its readings leave the pressure that it was shut in with, faster than the sensor's own error wanders. That
-is asked because the error bar of a coasting filter grows: at last a port that is still shut would agree with it. Nor may
-it leave once and agree by chance long after: where it has not come to agree within two seconds, it is shut in again, with
-the pressure that it has then, and has to leave that one, too. So what ends a flag is a change that leads to where the air
-is. A pressure that stands still (its sensor warms up, the push ends, a bubble moves) meets the coasting filter some time.
+is asked because the error bar of a coasting filter grows: at last a port that is still shut would agree with it. Nor
+may it leave once and agree by chance long after: where it has not come to agree within two seconds, it is taken to be
+shut in again, with the pressure that it has then, and has to leave that one, too. So what ends a flag is a change that
+leads to where the air is; a pressure that only stands elsewhere (the push has ended, the sensor has become warm) would
+meet the coasting filter some time.
 
 It agrees when its readings fit the coasting filter for a second. That second doubles whenever a flag comes back within
 ten.
