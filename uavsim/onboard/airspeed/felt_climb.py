@@ -25,7 +25,9 @@ PUSHED = 6.0
 # s since the first 3 m/s, in which a push is that of the launcher. By hand: the longest stroke of a catapult. A motor
 # that pushes on does not hold the path to the rail's direction
 STROKE, BEGUN = 1.0, 3.0
-UNSURE = 0.15  # share of the height on the rail, as `first_climb.UNSURE`
+# share of the height on the rail that is not known: elevation and way. By hand. For the odds of `first_climb`, which go
+# without f_z, all of the height that the rail points to beyond its end is unknown
+UNSURE = 0.15
 # share of c₀, and m/s: elevation (half a degree at 26 m/s is 0.23 m/s), the scale of f_x, and when the push ended
 CLIMB_SHARE, CLIMB_SD = 0.05, 0.2
 FELT_SD = 0.3  # m/s², of ċ: a bank of 14°, at which 1 − cos φ is 0.03, all the time. By hand

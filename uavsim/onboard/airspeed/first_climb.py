@@ -16,6 +16,9 @@ low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what
 
   A static pressure that has not moved while D falls below `LOST` is shut: of the three that could be to blame (a total
   port that begins to leak, an offset of f_x that arises in the push) it is the one that has never shown life.
+* **Climb.** Whatever the air does to V, the accelerometer says how the path bends (`felt_climb`). A port that should
+  have moved by five standard deviations of that height more than it has is shut. In gusts D tells it too late: in a
+  headwind that grows by 2 m/s over the first 10 m of height, and a gust of 1 m/s, −6 m/s is −3.
 
 Until it has shown life, what it may hide is in the bar: ρ g h with the h that the rail's elevation gives, as far as
 `HIGHEST`, or what D says, times √P_shut: the standard deviation of an error that is there with the probability P_shut.
@@ -25,7 +28,7 @@ D limits the h of the rail, too: what is hidden is −½ ρ V D, and D is known 
 
 from math import exp, inf, log, nan, sin, sqrt
 
-from uavsim.onboard.airspeed.felt_climb import FeltClimb
+from uavsim.onboard.airspeed.felt_climb import UNSURE, FeltClimb
 from uavsim.onboard.airspeed.gust import GRAVITY
 
 MEAN = 0.1  # s, of the mean pressure
@@ -47,9 +50,6 @@ LEVEL, SETTLES = -1.0, 2.0
 # taken back within some readings
 PRIOR, LEAST_ODDS, MOST_ODDS = -7.0, -16.0, 5.0
 SAID = 3.0  # nats that one reading may say at the most: no spike decides. By hand
-# share of the height on the rail that is not known: elevation and way. By hand. Off the rail the path bends by what
-# nobody on board knows, and all of the height that the rail points to beyond its end is unknown
-UNSURE = 0.15
 # standard deviations by which the climb that f_z says must be more than the port has moved. By hand: at 3 a shut port
 # off a rail of 12° was named at 2 or 3 m of height, sooner than the 10 m that are asked; 5 leaves a live one more room
 SURE = 5.0
