@@ -45,11 +45,15 @@ class Calibration:
     ports : tuple of float
         Its errors of the static port's coefficients c₀, c_α, c_αα and c_ββ, and of the slipstream, in their standard
         deviations.
+    wind : tuple of float
+        Those of the wind that is declared, its parts from the south and from the west, in `DECLARED` of the mean wind,
+        and of its growth with the height, in `GROWN`.
     """
 
     total: float = 0.0
     static: float = 0.0
     ports: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    wind: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 NO_CALIBRATION = Calibration()
@@ -59,7 +63,8 @@ def calibrated(scenario: Scenario, streams: Streams) -> Calibration:
     """What a calibration found: done on the units that fly, with errors of its own."""
     a, b, c, d, e = streams("onboard.ports.calibration").standard_normal(5).tolist()
     total, static = _membranes(scenario, streams)
-    return Calibration(total, static, (a, b, c, d, e))
+    south, west, grown = streams("onboard.wind").standard_normal(3).tolist()
+    return Calibration(total, static, (a, b, c, d, e), (south, west, grown))
 
 
 def _membranes(scenario: Scenario, streams: Streams) -> tuple[float, float]:
@@ -186,8 +191,11 @@ def _elevation(scenario: Scenario) -> float | None:
     return None if told is None else radians(told)
 
 
-def believed_air(scenario: Scenario) -> EstimatorSettings:
-    """Return the estimator's settings with turbulence and humidity as the environment has them, and all bounds."""
+def believed_air(scenario: Scenario, calibration: Calibration = NO_CALIBRATION) -> EstimatorSettings:
+    """Return the estimator's settings with turbulence and humidity as the environment has them, and all bounds.
+
+    The mean wind is declared as somebody has measured it, with errors as they are believed (`Calibration.wind`).
+    """
     settings, belief = _bounded(scenario), scenario.mismatch
     if settings.vapour_fraction is None:
         settings = replace(settings, vapour_fraction=belief.humidity * at_ground(scenario.environment).vapour_fraction)
@@ -198,18 +206,18 @@ def believed_air(scenario: Scenario) -> EstimatorSettings:
         settings = replace(settings, aided=replace(settings.aided, launch_height=scenario.launcher.height))
     if grown > 0.0:
         angle = radians(scenario.launcher.heading_deg - scenario.environment.wind_from_deg)
-        known = belief.wind * grown * cos(angle)
+        known = belief.wind * grown * (1.0 + GROWN * calibration.wind[2]) * cos(angle)
         settings = replace(
             settings, aided=replace(settings.aided, shear=belief.gust * GROWN * grown, shear_along=known)
         )
-    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario)))
+    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario, calibration)))
     sd *= belief.gust
     if not sd > 0.0:
         return settings
     return replace(settings, aided=replace(settings.aided, gust_sd=sd, gust_length=length, gust_height=height))
 
 
-def _rail_wind(scenario: Scenario) -> dict[str, float]:
+def _rail_wind(scenario: Scenario, calibration: Calibration) -> dict[str, float]:
     """The wind past the aircraft on its rail as it is declared, unless the estimator's settings have one."""
     environment, launcher, share = scenario.environment, scenario.launcher, scenario.mismatch.wind
     if scenario.estimator.aided.rail_wind_sd > 0.0 or not scenario.plant.chosen.on_rail:
@@ -220,6 +228,8 @@ def _rail_wind(scenario: Scenario) -> dict[str, float]:
     sd = hypot(scenario.mismatch.gust * turbulent, share * DECLARED * hypot(north, east)) if share > 0.0 else 0.0
     if not sd > 0.0:
         return {}
+    off = DECLARED * hypot(north, east)
+    north, east = north + off * calibration.wind[0], east + off * calibration.wind[1]
     heading = radians(launcher.heading_deg)
     head = -(north * cos(heading) + east * sin(heading))
     right = north * sin(heading) - east * cos(heading)

@@ -135,7 +135,7 @@ class Onboard:
         self.computer = FlightComputer(
             scenario.flight_computer,
             self._detector,
-            airspeed.build(believed_air(scenario), noise, tare_window(scenario, release_time)),
+            airspeed.build(believed_air(scenario, calibration), noise, tare_window(scenario, release_time)),
             rate,
             scenario.launch_axis,
             rail := RailOffset(noise),

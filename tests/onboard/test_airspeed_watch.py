@@ -47,6 +47,14 @@ def test_a_level_turn_is_no_climb_that_did_not_come(bank, gusts, sd):
     assert static_evidence(np.zeros(2000), turn(bank), sd=sd, speed=32.0, gusts=gusts).max() < 0.7 * SHUT
 
 
+def test_a_turn_is_known_by_what_is_beyond_the_offset_of_f_z():
+    """An accelerometer known to read 5.7 m/s² too little, and 1.0 m/s² too much of it in a turn: 6.7 m/s² of pull."""
+    test = ClimbTest(9.0, 0.0, 9.8, True)
+    test.a = -5.7
+    test.add(0.0, 1.0, GRAVITY + 1.0, WEIGHT, 54.0)
+    assert test._pull.mean == pytest.approx(6.7)
+
+
 @pytest.mark.parametrize("speed", [32.0, 80.0, 145.0])
 def test_gusts_that_move_a_quiet_static_port_are_no_fault(speed):
     """What a gust of 1 m/s does to a port that is off by 2 % of q, in level flight at that speed, m/s."""

@@ -93,7 +93,9 @@ def replayed(flight: Flight) -> Array:
     scenario = scenario_of(flight)
     draws = draw(scenario)
     noise = believed_noise(scenario, draws.calibration)
-    estimator = RememberingFilter(believed_air(scenario), noise, tare_window(scenario, draws.release_time))
+    estimator = RememberingFilter(
+        believed_air(scenario, draws.calibration), noise, tare_window(scenario, draws.release_time)
+    )
     rail = RailOffset(noise)
     turn = linear(attitude(*scenario.accelerometer.mounting_deg))
     launch = flight.score["launch"]["detected_time"]
