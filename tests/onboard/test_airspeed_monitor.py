@@ -294,6 +294,15 @@ def test_a_port_that_is_still_shut_is_not_taken_back():
     assert any(back.hear(60.0 + 0.01 * k, z + 40.0, z + 40.0, 0.0, 1.0) for k, z in enumerate(read[:200].tolist()))
 
 
+def test_a_rough_spell_of_noise_is_no_life():
+    """Nine readings of 2.3 standard deviations, up and down: in one flight such a spell took a shut port back."""
+    back = Readmission(NOISE**2, 0.007)
+    back.flag(0.0, 1000.0, NOISE**2)
+    size = [0.9 if k not in range(300, 309) else 2.3 for k in range(600)]
+    read = [1000.0 + NOISE * one * (-1.0) ** k for k, one in enumerate(size)]
+    assert not any(back.hear(0.01 * k, z, z, 0.0, 1.0) for k, z in enumerate(read))
+
+
 def test_a_port_that_stands_elsewhere_is_not_taken_back_by_a_filter_that_meets_it():
     """The push ends, the shut pressure is 14 Pa another, and 7 s later the coasting filter comes by: that was a flight.
 

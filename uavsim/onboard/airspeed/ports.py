@@ -257,7 +257,11 @@ class Ports:
             self.tell(t, "airspeed_recovered", "total")
 
     def hear_static(self, t: float, energy: EnergyFilter, at: float, reading: float, difference: float) -> None:
-        """Compare a flagged static port in the same way: its reading of an instant, s, and how far off it is, Pa."""
+        """Compare a flagged static port in the same way.
+
+        Its reading of an instant, s, has nothing taken off by a speed, with which a shut one would seem to move; how
+        far off it is, Pa, is of one that is freed of its position error.
+        """
         if self.static.coast(at, self.raw_static, reading, difference, energy.pp + self._static_variance):
             energy.widen_static(difference * difference)
             energy.read_relative(self._noise.differential)

@@ -17,7 +17,7 @@ for the difference. The total pressure is taken on; with f_x it tells the climb.
 Which of the two ports is to blame where both seem wrong is weighed in `ports`.
 """
 
-from math import exp, inf
+from math import exp, inf, nan
 
 from uavsim.onboard.airspeed.air import Air
 from uavsim.onboard.airspeed.climb import ClimbTest
@@ -476,7 +476,7 @@ class StaticWatch:
         if kind != "frozen":
             self._back.flag(t, kind=kind)
             return
-        self._back.flag(t, test.held, test.held_variance)
+        self._back.flag(t, nan, self._variance)  # as it is read from now on: `held` is freed of the position error
         weight, v = density * GRAVITY, max(energy.v, 1.0)
         off = weight * CLIMB_SD
         p = test.held - weight * test.climb_then * test.since
