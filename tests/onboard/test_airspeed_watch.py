@@ -187,3 +187,14 @@ def test_a_port_that_slides_away_from_the_force_is_told():
     kind, when = slides(32.0 - 1.8 * slid, np.zeros(3000), 1.8 * (1.0 - np.exp(-slid / 0.2)))
     assert kind == "drift"
     assert when < 22.0
+
+
+@pytest.mark.parametrize(("gust", "off"), [(1.0, 11.25), (0.2, 2.25)])
+def test_without_a_static_port_the_bar_grows_with_the_gusts(gust, off):
+    """15 s after its flag V was 18 m/s off in gusts of 1 m/s, and the filter's own bar 1.5 m/s."""
+    aided = AidedSettings(gust_sd=gust)
+    ports = Ports(aided, Air(aided, 1.0), NoiseModel(total_sd=1.0, static_sd=1.0, temperature_sd=0.5))
+    assert ports.astray(10.0) == 0.0
+    ports.static.since = 10.0
+    assert ports.astray(10.0) == 0.0
+    assert ports.astray(25.0) ** 0.5 == pytest.approx(off)

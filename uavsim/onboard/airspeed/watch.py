@@ -419,9 +419,11 @@ class StaticWatch:
     ----------
     faulty, shut : bool
         Whether the port is flagged, and whether that is because it has been shut.
+    since : float
+        When it was flagged, s.
     """
 
-    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut")
+    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut", "since")
 
     def __init__(
         self,
@@ -435,7 +437,7 @@ class StaticWatch:
         self._variance, self._offset_sd, self._gusts = variance * apart(alike), offset_sd, gusts
         self._back = Readmission(variance, walk, row)
         self._test, self._t = ClimbTest(variance, 0.0, offset_sd, gusts), -inf
-        self.faulty = self.shut = False
+        self.faulty, self.shut, self.since = False, False, inf
 
     @property
     def suspect(self) -> bool:
@@ -482,7 +484,7 @@ class StaticWatch:
     def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
         """Flag the port at `t`, s; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
-        self.faulty, self.shut = True, kind in SHUT_IN
+        self.faulty, self.shut, self.since = True, kind in SHUT_IN, t
         if kind != "frozen":
             self._back.flag(t, kind=kind)
             return
@@ -503,7 +505,7 @@ class StaticWatch:
         self, energy: EnergyFilter, t: float, held: tuple[float, float], lost: float, density: float
     ) -> None:
         """Flag a port that was shut before the launch: half of what V has lost is the height that it hides."""
-        self.faulty = self.shut = True
+        self.faulty, self.shut, self.since = True, True, t
         self._back.flag(t, *held)
         hidden = -0.5 * density * max(energy.v, 1.0) * lost
         energy.leave_static(
