@@ -33,6 +33,11 @@ PERSISTENT = 5
 # Without it the gate shut out a live port for as long as it took the filter's own gusts to reach it, 0.7 s, in which V
 # was 2 m/s off and the port taken for one that drifts. By hand
 SHUT_OUT = 5
+# 1/s²: what V is off by without a static port, ½ a T² for each m/s of the gusts. A total pressure alone tells nothing
+# of how V and p share it, but the filter's slopes are those of estimates that gusts have moved: it believes that it
+# does, and where gusts are it ends far off. By hand; docs/faults.md, static-gusts, holds the check (7 … 18 m/s in
+# 11 … 15 s)
+RUNS_OFF = 0.1
 
 News = tuple[float, str, str, str]
 """Time, s, event, channel and kind."""
@@ -142,6 +147,12 @@ class Ports:
         self.gated += 1
         if self.gated % SHUT_OUT == 0:
             energy.widen_speed(self._aided.gust_sd**2)
+
+    def astray(self, t: float) -> float:
+        """Return what V may be off by beside its variance at `t`, s, without a static port, m²/s²."""
+        since = t - self.static.since
+        off = 0.5 * RUNS_OFF * self._aided.gust_sd * since * since if since > 0.0 else 0.0
+        return off * off
 
     # -- blame ---------------------------------------------------------------------------------------------------------
 

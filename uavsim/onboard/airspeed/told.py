@@ -93,6 +93,9 @@ class Told:
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
         variance += ports.between
+        lone = ports.static.faulty and (ports.static.shut or not self._differential)
+        if lone:
+            variance += ports.astray(t)
         warm = self._temperature_share * speed / air.temperature
         square = warm * warm
         if self._static_share > 0.0:
@@ -115,6 +118,6 @@ class Told:
             and air.measured
             and (sd < COASTED or (t - self._corrections.fresh < FRESH and not ports.total.faulty))
             # without it V and the climb are hardly told apart, but for a difference that has been read
-            and not (ports.static.faulty and (ports.static.shut or not self._differential))
+            and not lone
         )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static

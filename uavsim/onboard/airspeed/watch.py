@@ -25,8 +25,8 @@ from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
-from uavsim.onboard.airspeed.lift import TURN, Pull
-from uavsim.onboard.airspeed.monitor import PortMonitor
+from uavsim.onboard.airspeed.lift import TURN, TURN_SD, Pull
+from uavsim.onboard.airspeed.monitor import SLIDE, PortMonitor
 from uavsim.onboard.airspeed.readmission import MUTE, Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.smooth import LEVEL, SmoothTest
@@ -237,7 +237,26 @@ class TotalWatch:
                 return "leak"
         elif wanders:
             return "leak"
-        return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
+        slide = energy.b * energy.b / self._bias_variance(t)
+        if slide > SLIDE:
+            slide = self._slide(energy.b, t, v, lift, slide)
+        return port.add(read, energy.innovation, nis, slide)
+
+    def _slide(self, b: float, t: float, v: float, lift: float, alone: float) -> float:
+        """Return b² over its variance, or of its change, if that is less; `alone` is the former.
+
+        A b that has long been there is α, or an offset: a port that drifts by as much had been far from the force.
+        """
+        turned = self._by_force(v, lift) - self._turn
+        off, doubt = b - self._lost - TURN * turned, TURN_SD * turned
+        changed = off * off / (self._bias_variance(t) + doubt * doubt)
+        return changed if changed < alone else alone
+
+    def _by_force(self, v: float, lift: float) -> float:
+        """Return x by the airspeed of the force, for a port that leaks must not look like slow flight."""
+        forced = v - self._wandering.gust
+        forced = forced if forced > LEAST_FLIGHT else LEAST_FLIGHT
+        return lift * lift / (forced * forced)
 
     @property
     def lost(self) -> float:
@@ -247,13 +266,10 @@ class TotalWatch:
     def _wanders(self, v: float, gained: float, lost: float, lift: float, dt: float) -> bool:
         """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away.
 
-        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. x goes by the airspeed of
-        the force, for a port that leaks must not look like slow flight. Where c matters too much, it is learnt anew.
+        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. Where c matters too much,
+        it is learnt anew.
         """
-        wandering = self._wandering
-        forced = v - wandering.gust
-        forced = forced if forced > LEAST_FLIGHT else LEAST_FLIGHT
-        turn = lift * lift / (forced * forced)
+        wandering, turn = self._wandering, self._by_force(v, lift)
         if not -UNTURNED < turn - self._turn < UNTURNED:
             wandering.forget()
             self._taught = self._taught if self._taught < RELEARNT else RELEARNT
@@ -409,9 +425,11 @@ class StaticWatch:
     ----------
     faulty, shut : bool
         Whether the port is flagged, and whether that is because it has been shut.
+    since : float
+        When it was flagged, s.
     """
 
-    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut")
+    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut", "since")
 
     def __init__(
         self,
@@ -425,7 +443,7 @@ class StaticWatch:
         self._variance, self._offset_sd, self._gusts = variance * apart(alike), offset_sd, gusts
         self._back = Readmission(variance, walk, row)
         self._test, self._t = ClimbTest(variance, 0.0, offset_sd, gusts), -inf
-        self.faulty = self.shut = False
+        self.faulty, self.shut, self.since = False, False, inf
 
     @property
     def suspect(self) -> bool:
@@ -472,7 +490,7 @@ class StaticWatch:
     def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
         """Flag the port at `t`, s; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
-        self.faulty, self.shut = True, kind in SHUT_IN
+        self.faulty, self.shut, self.since = True, kind in SHUT_IN, t
         if kind != "frozen":
             self._back.flag(t, kind=kind)
             return
@@ -493,7 +511,7 @@ class StaticWatch:
         self, energy: EnergyFilter, t: float, held: tuple[float, float], risen: float, density: float
     ) -> None:
         """Flag a port that was shut before the launch, and the height that it hides, m."""
-        self.faulty = self.shut = True
+        self.faulty, self.shut, self.since = True, True, t
         self._back.flag(t, *held)
         hidden = density * GRAVITY * risen
         energy.leave_static(
