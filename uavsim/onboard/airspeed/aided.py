@@ -144,7 +144,7 @@ class AidedFilter(Estimator):
         )  # fmt: skip
         fastest = FASTEST if settings.fastest is None else settings.fastest
         self._told = Told(
-            noise, fastest, progress, corrections=corrections, errors=errors, tests=tests, ports=ports
+            noise, fastest, progress, corrections=corrections, errors=errors, tests=tests, ports=ports, die=admission.die
         )
         self._hand_over = HandOver(
             self.core, noise, settings, self._tare_end,

@@ -15,6 +15,7 @@ from math import sqrt
 
 from uavsim.onboard.airspeed.air import SLOWEST
 from uavsim.onboard.airspeed.corrections import Corrections
+from uavsim.onboard.airspeed.die_warmth import DOUBT, DieWarmth
 from uavsim.onboard.airspeed.energy_model import isentropic
 from uavsim.onboard.airspeed.interface import NoiseModel
 from uavsim.onboard.airspeed.launch_tests import LaunchTests
@@ -45,10 +46,12 @@ class Told:
         Where the filter stands.
     corrections, errors, tests, ports : Corrections, PortErrors, LaunchTests, Ports
         What else is in doubt.
+    die : DieWarmth
+        How far the thermometer is behind the air.
     """
 
     __slots__ = (
-        "_climb", "_corrections", "_differential", "_errors", "_fastest", "_ports", "_progress", "_scale_share",
+        "_climb", "_corrections", "_die", "_differential", "_errors", "_fastest", "_ports", "_progress", "_scale_share",
         "_static_share", "_stroke", "_temperature_share", "_tests", "_warmed_share",
     )  # fmt: skip
 
@@ -61,11 +64,12 @@ class Told:
         corrections: Corrections,
         errors: PortErrors,
         tests: LaunchTests,
+        die: DieWarmth,
         ports: Ports,
     ) -> None:
         self._progress, self._corrections, self._errors = progress, corrections, errors
         self._tests, self._ports, self._fastest = tests, ports, fastest
-        self._climb, self._stroke = tests.climb, tests.stroke
+        self._die, self._climb, self._stroke = die, tests.climb, tests.stroke
         self._differential, self._scale_share = noise.differential, 0.5 * noise.difference_scale_sd
         self._temperature_share, self._static_share = 0.5 * noise.temperature_sd, 0.5 * noise.static_offset_sd
         self._warmed_share = 0.5 * noise.thermometer_recovery_sd
@@ -97,7 +101,8 @@ class Told:
             variance += self._tests.in_doubt(speed)
         variance += ports.between
         warm = self._temperature_share * speed / air.temperature
-        square = warm * warm
+        behind = 0.5 * DOUBT * self._die.behind * speed / air.temperature
+        square = warm * warm + behind * behind
         if self._static_share > 0.0:
             dense = self._static_share * speed / static
             square += dense * dense
