@@ -139,7 +139,8 @@ class TotalWatch:
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
         "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
-        "_silent", "_smooth", "_sound", "_static", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering",
+        "_silent", "_smooth", "_sound", "_static", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_usual_slide",
+        "_wandering",
         "coasts", "faulty", "port", "undecided",
     )  # fmt: skip
 
@@ -157,6 +158,7 @@ class TotalWatch:
         self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
+        self._usual_slide = SLIDE * aided.bias_sd**2
         self._jumped, self._jumped_at, self._opened = 0.0, -inf, -inf
         self._opened_by = aided.bias_sd**2, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
@@ -237,7 +239,8 @@ class TotalWatch:
                 return "leak"
         elif wanders:
             return "leak"
-        slide = energy.b * energy.b / self._bias_variance(t)
+        slide = energy.b * energy.b  # of what is usual it need not be known how usual it is
+        slide = slide / self._bias_variance(t) if slide > self._usual_slide else 0.0
         if slide > SLIDE:
             slide = self._slide(energy.b, t, v, lift, slide)
         return port.add(read, energy.innovation, nis, slide)
