@@ -205,6 +205,8 @@ class HeadKnowledge:
     ports : PortKnowledge
     temperature_sd : float
         Of the temperature, K: noise, turn-on offset, and what the board is warmer than the air.
+    die_lag : float
+        With which the thermometer follows the air, s.
     temperature_white_sd, temperature_step, temperature_lag : float
         Noise of one reading, rounding included, K; by which it is rounded, K; the time constant of the digital filter
         behind it, s.
@@ -236,6 +238,7 @@ class HeadKnowledge:
     thermometer_recovery: float
     thermometer_recovery_sd: float
     difference_sd: float
+    die_lag: float
     difference: DifferenceKnowledge | None = None
 
 
@@ -294,6 +297,7 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         temperature_white_sd=thermometer.temperature_noise_sd,
         temperature_step=thermometer.temperature_step,
         temperature_lag=thermometer.lag,
+        die_lag=settings.thermal.lag,
         column=column,
         column_sd=COLUMN_SD * abs(column),
         walk=hypot(*(part.walk for part in paired), *(_warming(part, settings.thermal) for part in paired)),

@@ -9,6 +9,8 @@ estimator: this module alone copies them from the one into the other. What no de
 * The turbulence is that which the environment declares (`uavsim.plants.air`), at the height of cruise, along the flight
   path: of the wind's axes, u where the rail points along the wind and v where it points across.
 * So is the humidity of the air.
+* How an aircraft lifts is known of fw8, by regression on four of its flights, and of a rig that has a wing, which gusts do
+  not move. Any other is one of the light UAVs: 60 to 300 N/m² of wing loading at a lift slope of 4.5 to 5.5.
 * Where the readings of a thermal differential sensor end, and how coarse they are, depends on the absolute pressure: it
   is that of the field.
 """
@@ -17,7 +19,7 @@ from dataclasses import dataclass, replace
 from math import cos, hypot, radians, sin, sqrt
 
 from sensors import HeadKnowledge, Streams, known_of_accelerometer, known_of_head, membranes
-from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
+from uavsim.onboard.airspeed import AidedSettings, EstimatorSettings, NoiseModel
 from uavsim.onboard.airspeed.head_errors import HeadErrors
 from uavsim.onboard.flow_through import FlowThroughSettings
 from uavsim.onboard.plausible import FASTEST, MOST_FLIGHT_FORCE, MOST_FORCE
@@ -25,12 +27,18 @@ from uavsim.plants.air.dryden import FOOT, LOWEST, deviations, lengths
 from uavsim.plants.air.settings import EnvironmentSettings
 from uavsim.plants.air.weather import at_ground
 from uavsim.plants.air.wind import growth, mean_wind
+from uavsim.plants.rigs.flight_path import FlightPathSettings
 from uavsim.scenario import MismatchSettings, Scenario
 
 # of a thermal part's range: an aircraft is above its field, where what it reads is worth more; 1 % is 90 m
 ENDS = 0.98
 GROWN = 0.3  # share of the mean wind's growth along the path that is not known: place, veer and the aircraft's heading
 DECLARED = 0.1  # share of the mean wind that a declared one is off by: a hand anemometer, gusts between its looks
+# a, kg/m², α₀, rad, and their standard deviations (`AidedSettings`): of fw8, whose α is within 0.011 of the law at any
+# time (pitch rate, wings that twist), and of light UAVs. By hand
+FW8 = {"lift_slope": 9.45, "lift_zero": -0.0695, "lift_slope_sd": 0.0, "lift_zero_sd": 0.01}
+LIGHT = {"lift_slope": 7.5, "lift_zero": -0.06, "lift_slope_sd": 3.0, "lift_zero_sd": 0.03}
+RIG_SD = 0.03  # rad, of a rig's α₀: its motor pulls along the path and carries some of what the lift seems to. By hand
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
 
 
@@ -133,6 +141,7 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         static_offset_sd=belief.drift * static.offset_sd,
         thermometer_recovery=min(1.0, head.thermometer_recovery),
         thermometer_recovery_sd=head.thermometer_recovery_sd,
+        die_lag=belief.lag * head.die_lag,
         differential=head.difference is not None,
         difference_scale_sd=0.0 if head.difference is None else belief.difference_scale * head.difference.scale_sd,
         head=_ports(head, belief, calibration),
@@ -210,7 +219,7 @@ def believed_air(scenario: Scenario, calibration: Calibration = NO_CALIBRATION) 
         settings = replace(
             settings, aided=replace(settings.aided, shear=belief.gust * GROWN * grown, shear_along=known)
         )
-    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario, calibration)))
+    settings = replace(settings, aided=replace(settings.aided, **_rail_wind(scenario, calibration), **_lift(scenario)))
     sd *= belief.gust
     if not sd > 0.0:
         return settings
@@ -239,6 +248,23 @@ def _rail_wind(scenario: Scenario, calibration: Calibration) -> dict[str, float]
         "rail_wind_down": share * head * sin(up),
         "rail_wind_sd": sd,
     }
+
+
+def _lift(scenario: Scenario) -> dict[str, float]:
+    """How the aircraft lifts, unless the estimator's settings say it."""
+    aided, rig = scenario.estimator.aided, scenario.plant.own
+    if aided.lift_slope is not None and aided.lift_zero is not None:
+        return {}
+    known = FW8 if scenario.aircraft.model == "fw8" else LIGHT
+    if isinstance(rig, FlightPathSettings):
+        vertical = deviations(scenario.environment.turbulence_wind_20ft, scenario.flight_computer.height)[1]
+        known = {
+            "lift_slope": 2.0 * rig.wing_loading / rig.lift_slope,
+            "lift_zero": radians(rig.zero_lift_deg),
+            "lift_zero_sd": RIG_SD,
+            "lift_gust_sd": scenario.mismatch.gust * vertical,
+        }
+    return {key: value for key, value in known.items() if getattr(aided, key) == getattr(AidedSettings(), key)}
 
 
 def _bounded(scenario: Scenario) -> EstimatorSettings:

@@ -135,7 +135,7 @@ def test_a_stroke_through_a_wind_from_any_side_ends_with_its_airspeed(along: flo
 
 
 def test_the_swing_of_the_first_seconds_dies_away() -> None:
-    angles = FlowAngles(AidedSettings())
+    angles = FlowAngles(AidedSettings(lift_slope=9.45, lift_zero=-0.0695))
     angles.leave(2.0, 0.3)
     first, later = angles.side(2.0, 25.0)[0], angles.side(3.5, 25.0)[0]
     assert first == pytest.approx(0.09, rel=0.02)
@@ -145,7 +145,7 @@ def test_the_swing_of_the_first_seconds_dies_away() -> None:
 
 def test_lift_tells_the_angle_of_attack_once_the_wings_are_out() -> None:
     """9.45 · 9.81/(1.225 · 625) − 0.0695 = 0.0516 rad at 25 m/s in level flight."""
-    angles = FlowAngles(AidedSettings())
+    angles = FlowAngles(AidedSettings(lift_slope=9.45, lift_zero=-0.0695))
     assert angles.down(25.0, 1.225) == FOLDED
     angles.lift = 9.81
     assert angles.down(25.0, 1.225)[0] == pytest.approx(0.0516, abs=2e-4)

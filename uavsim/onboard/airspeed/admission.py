@@ -8,6 +8,8 @@ themselves, when they agree (`readmission`).
 
 from math import inf, nan, sqrt
 
+from uavsim.onboard.airspeed.die_warmth import DieWarmth
+from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.interface import NoiseModel, reading_variances
 from uavsim.onboard.airspeed.measured import limits
 from uavsim.onboard.airspeed.ports import Ports
@@ -56,19 +58,21 @@ class Admission:
         Of both channels.
     static_pause : float
         How long before the last static pressure the one before came, s.
+    die : DieWarmth
+        How far the thermometer is behind the air.
     muted : list of bool
         Whether nothing is heard of accelerometer and thermometer.
     """
 
     __slots__ = (
         "_coldest", "_heard", "_pause", "_ports", "_progress", "_static_ends", "_static_within", "_total_ends",
-        "_total_within", "_warmed", "_warmest", "_warmth", "muted", "static", "static_pause", "sudden", "total",
+        "_total_within", "_warmed", "_warmest", "_warmth", "die", "muted", "static", "static_pause", "sudden", "total",
     )  # fmt: skip
 
     def __init__(self, noise: NoiseModel, longest: float, progress: Progress, ports: Ports, warmth: Row) -> None:
         self._progress, self._ports, self._warmth = progress, ports, warmth
         self._total_within, self._static_within, (self._coldest, self._warmest) = limits(noise)
-        self._warmed = 0.2 * noise.thermometer_recovery
+        self._warmed, self.die = 0.2 * noise.thermometer_recovery, DieWarmth(noise.die_lag)
         self.sudden = max(SUDDEN, SUDDEN_SD * sqrt(max(reading_variances(noise))))
         self.total, self.static = Spikes(), Spikes()
         self._total_ends, self._static_ends = Conversions(longest), Conversions(longest)
@@ -79,6 +83,7 @@ class Admission:
         """Begin at an instant, s: all are heard."""
         self.total.forget()
         self.static.forget()
+        self.die.forget()
         self._heard, self.muted = [start, start, start], [False, False]
         self.forget_ends()
 
@@ -111,9 +116,12 @@ class Admission:
         progress = self._progress
         energy, air, steady = progress.energy, progress.air, progress.time > progress.steady_from
         heard, given = self._heard, (channel, p_static, temperature)
+        if not progress.wind.on:
+            self.die.add(energy.v * energy.s / GRAVITY, t - before)
         if self._coldest <= temperature <= self._warmest:
             if self._warmed > 0.0:
                 temperature /= 1.0 + 5.0 * self._warmed * energy.v * energy.v / air.heat
+            temperature += self.die.behind
             if temperature != air.temperature:
                 air.warm(temperature)
             air.measured = True
@@ -129,7 +137,7 @@ class Admission:
             p_static = nan
         reach = self.sudden + (STEEP if steady else STROKE) * (t - before)
         total, static = self.total.take(channel, reach), self.static.take(p_static, reach)
-        if steady and JUMPED in (total, static):
+        if steady and (total == JUMPED or static == JUMPED):  # noqa: PLR1714 - no tuple for each reading
             self._ports.jumped(t, energy, progress.now, total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         self._warmth.add(given[2] if end_static == end_static else nan)

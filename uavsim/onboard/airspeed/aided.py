@@ -144,7 +144,7 @@ class AidedFilter(Estimator):
         )  # fmt: skip
         fastest = FASTEST if settings.fastest is None else settings.fastest
         self._told = Told(
-            noise, fastest, progress, corrections=corrections, errors=errors, climb=tests.climb, ports=ports
+            noise, fastest, progress, corrections=corrections, errors=errors, tests=tests, ports=ports, die=admission.die
         )
         self._hand_over = HandOver(
             self.core, noise, settings, self._tare_end,
@@ -355,7 +355,11 @@ class AidedFilter(Estimator):
             self._flag(t, broken)
         noise = self._noise
         tests.begin_stroke(
-            () if broken else hand_over.rows, self._tare_end if noise.covered else -inf, start, begun.wind
+            () if broken else hand_over.rows,
+            self._tare_end if noise.covered else -inf,
+            start,
+            begun.wind,
+            sided=self._onset.wind == 0.0,
         )
         tests.begin_climb(hand_over.rows, start, noise)
 

@@ -4,7 +4,9 @@
 
     α = a n/(ρ V²) + α₀
 
-a and α₀ are the aircraft's, of a lift curve that is straight. Folded wings lift little, and α is small and not known.
+a and α₀ are the aircraft's, of a lift curve that is straight, each with what is not known of it. A gust from below turns
+the flow and lifts the aircraft; of a course that gusts do not move (`lift_gust_sd`) the lift does not tell of it. Folded
+wings lift little, and α is small and not known.
 
 **Sideslip.** The rail is left with that of the side wind, β₀. The aircraft then swings into the wind: y = sin β
 is counted as a normal number of mean 0 and of the variance y_g², y_g being what turbulence makes, σ/V. So y² has that
@@ -21,7 +23,6 @@ SWING = (
 )
 OVER = 6.0  # τ in which it has died away
 FOLDED = 0.0, 0.05  # rad, α and its standard deviation with the wings folded and while they unfold. By hand
-LIFTED_SD = 0.01  # rad, of α by lift: pitch rate, wings that twist. fw8 is within 0.011 at any time. By hand
 STEADY_SD = 0.01  # rad, of β beside turbulence: an aircraft that is not trimmed to the last
 LEAST_SPEED = 10.0  # m/s, below which no wing flies
 SWUNG = 0.67  # share of the swing's square that is not known: it is anywhere between 0 and twice its mean. By hand
@@ -44,10 +45,12 @@ class FlowAngles:
         n, m/s², that has been seen last with the wings out; NaN before.
     """
 
-    __slots__ = ("_gust", "_left", "_side2", "_slope", "_zero", "lift")
+    __slots__ = ("_blown", "_gust", "_left", "_side2", "_slope", "_slope_sd", "_zero", "_zero_sd", "lift")
 
     def __init__(self, aided: AidedSettings) -> None:
-        self._slope, self._zero = aided.lift_slope, aided.lift_zero
+        slope, zero = aided.lift_slope, aided.lift_zero
+        self._slope, self._zero = 0.0 if slope is None else slope, 0.0 if zero is None else zero
+        self._slope_sd, self._zero_sd, self._blown = aided.lift_slope_sd, aided.lift_zero_sd, aided.lift_gust_sd
         self._gust = aided.gust_sd if aided.gust_sd > aided.gust_floor else 0.0
         self.forget()
 
@@ -84,9 +87,10 @@ class FlowAngles:
         lift = self.lift
         if not (lift == lift and self._slope > 0.0 and v > LEAST_SPEED):
             return FOLDED
-        alpha = self._slope * lift / (density * v * v) + self._zero
+        loaded = lift / (density * v * v)
+        alpha = self._slope * loaded + self._zero
         if alpha > STEEPEST:
             return STEEPEST, 0.5 * STEEPEST
         if alpha < -STEEPEST:
             return -STEEPEST, 0.5 * STEEPEST
-        return alpha, LIFTED_SD
+        return alpha, hypot(self._zero_sd, self._slope_sd * loaded, self._blown / v)

@@ -5,8 +5,9 @@ walk of density 2 σ² V/L. At low altitude (MIL-F-8785C, h in feet)
 
     σ_u = σ_w/(0.177 + 0.000823 h)^0.4,    L_u = h/(0.177 + 0.000823 h)^1.2,    2 σ_u²/L_u ∝ (0.177 + 0.000823 h)^0.4/h
 
-From 1000 ft down to 10 ft, where the law ends, this is 1/h times a factor that falls from 1.0 to 0.5. So the filter
-believes σ and L at one height, and takes the density to go as 1/h.
+So the filter believes σ and L at one height, and takes the density to go as the last of these from 10 ft to 1000 ft,
+where the law ends, and to stay beyond. (As 1/h alone, from 15 m on, it is 0.7 of that at 170 m and half of it at 400 m:
+too little for fast flight, whose readings were then left out.)
 
 In a climb the mean wind changes with the height, too: dW/dh = w/h where it goes with ln h. What is declared of it along
 the path makes the airspeed grow by w ḣ/h, with ḣ = V s/g and s = g sin γ. What is not known of w, from which side the
@@ -20,7 +21,8 @@ from uavsim.onboard.airspeed.settings import AidedSettings
 GRAVITY = 9.80665  # m/s², ISO 80000-3
 
 LOWEST_CLIMB = 1.0  # m above the ground, below which no aircraft climbs
-LOWEST = 3.05  # m: 10 ft, MIL-F-8785C; below it the turbulence is as there
+LOWEST, HIGHEST = 3.05, 304.8  # m: 10 and 1000 ft, MIL-F-8785C; beyond either the turbulence is as there
+GROUND, GROWS = 0.177, 0.0027  # 0.177 + 0.000823 h, h in feet
 
 
 def gust_density(aided: AidedSettings, height: float) -> float:
@@ -28,8 +30,15 @@ def gust_density(aided: AidedSettings, height: float) -> float:
     calm = 2.0 * aided.gust_floor**2 / aided.gust_length
     declared = 2.0 * aided.gust_sd**2 / aided.gust_length
     if aided.gust_height > 0.0:
-        declared *= aided.gust_height / (height if height > LOWEST else LOWEST)
+        declared *= _thinner(height) / _thinner(aided.gust_height)
     return declared if declared > calm else calm
+
+
+def _thinner(height: float) -> float:
+    """(0.177 + 0.0027 h)^0.4/h, h in m: how the density of the turbulence goes with the height."""
+    h = LOWEST if height < LOWEST else HIGHEST if height > HIGHEST else height
+    falls: float = (GROUND + GROWS * h) ** 0.4 / h
+    return falls
 
 
 def shear_density(aided: AidedSettings, height: float, slope: float) -> float:

@@ -94,6 +94,8 @@ class NoiseModel:
         What the ports are off by, as a calibration knows it.
     thermometer_recovery, thermometer_recovery_sd : float
         Share r of the flow's warming that the thermometer reads, T (1 + 0.2 r M²), and its standard deviation.
+    die_lag : float
+        With which the thermometer follows the air, s.
     differential : bool
         Whether the total pressure is the sum of the static one and of a difference that one sensor reads. Then
         `total_sd`, `total_range` and `total_step` are those of the difference.
@@ -145,6 +147,7 @@ class NoiseModel:
     head: HeadErrors = NO_ERRORS
     thermometer_recovery: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
     thermometer_recovery_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
+    die_lag: Annotated[float, Interval(ge=0.0, le=3600.0)] = 0.0
     differential: bool = False
     difference_scale_sd: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0
 

@@ -15,7 +15,7 @@ from uavsim.onboard.airspeed.port_errors import PortErrors
 from uavsim.onboard.airspeed.ports import Ports
 from uavsim.onboard.airspeed.progress import Progress
 from uavsim.onboard.airspeed.rest_wind import Row
-from uavsim.onboard.airspeed.stroke import StrokeTest, most_wind
+from uavsim.onboard.airspeed.stroke import StrokeTest
 
 # m/s, speed over the ground up to which a push has not begun: V may change by what is learned of the wind. By hand: a
 # tenth of any launch's
@@ -47,7 +47,8 @@ class LaunchTests:
 
     __slots__ = (
         "_acceleration", "_acceleration_sd", "_base", "_difference", "_errors", "_ports", "_progress", "_rest_sd",
-        "_scale_variance", "_static", "_total", "_total_variance", "_wind_variance", "climb", "stroke",
+        "_scale_variance", "_sided", "_static", "_total", "_total_variance", "_wind", "_wind_variance", "climb",
+        "stroke",
     )  # fmt: skip
 
     def __init__(
@@ -68,7 +69,7 @@ class LaunchTests:
         self._total_variance = reading_variances(noise)[0]
         self.stroke, self.climb = StrokeTest(difference.differential), FirstClimb()
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
-        self._rest_sd = 0.0
+        self._rest_sd, self._wind, self._sided = 0.0, (0.0, 0.0), True
 
     def close(self) -> None:
         """Test nothing: the filter begins, and not on its rail."""
@@ -80,7 +81,9 @@ class LaunchTests:
         progress = self._progress
         self._base, self._rest_sd = (progress.time, progress.u, progress.w), rest_sd
 
-    def begin_stroke(self, rows: Iterable[Row], tare_end: float, end: float, wind: tuple[float, float]) -> None:
+    def begin_stroke(
+        self, rows: Iterable[Row], tare_end: float, end: float, wind: tuple[float, float], *, sided: bool
+    ) -> None:
         """Begin the test of the stroke.
 
         Parameters
@@ -89,14 +92,18 @@ class LaunchTests:
             As of `StrokeTest.begin`, the rows as they came from the head.
         wind : tuple of float
             Along the launch, m/s, and its standard deviation.
+        sided : bool
+            Whether it is known from which side it comes.
         """
+        self._wind, self._sided = wind, sided
         read, progress = Difference(self._difference.differential).read, self._progress
         self.stroke.begin(
             ((row[0], read(row[1], row[2]), *row[2:]) for row in rows),
             tare_end=tare_end,
             end=end,
             variance=self._total_variance,
-            wind=most_wind(*wind),
+            wind=wind,
+            sided=sided,
             density=progress.energy.p / progress.air.gas,
         )
 
@@ -105,7 +112,7 @@ class LaunchTests:
         statics = sorted(row[2] for row in rows if row[5] <= end and row[2] == row[2])
         if statics:
             elevation = 0.0 if noise.rail_elevation is None else noise.rail_elevation
-            self.climb.begin(statics[len(statics) // 2], noise.static_sd, elevation)
+            self.climb.begin(statics[len(statics) // 2], noise.static_sd, elevation, noise.lift_offset_sd)
 
     def speed_gained(self) -> float:
         """Return what the force has given since the launch at the filter's instant, m/s, that at rest taken off."""
@@ -126,6 +133,16 @@ class LaunchTests:
             self._not_risen(kind)
         return bool(kind)
 
+    def in_doubt(self, speed: float) -> float:
+        """Return what a total port that may be shut adds to the variance of an airspeed that is told, m/s; m²/s²."""
+        (along, sd), gained, wind = self._wind, self.speed_gained(), self._progress.wind
+        off = wind.speed(gained + along) - speed
+        square = off * off + sd * sd
+        if not self._sided:
+            other = wind.speed(gained - along) - speed
+            square = max(square, other * other + sd * sd)
+        return self.stroke.shut * square
+
     def _not_risen(self, kind: str) -> None:
         """Flag the total port in the stroke. What it has told of the wind is void, and V is what the force gave."""
         progress = self._progress
@@ -134,10 +151,7 @@ class LaunchTests:
         since, gained = progress.time - begun, self.speed_gained()
         rest = self._rest_sd * since
         variance = self._wind_variance + progress.w - w + rest * rest + self._scale_variance * gained * gained
-        held = self._total.last
-        if self._difference.differential:
-            held += self._difference.static - self._difference.zero
-        self._ports.not_risen(progress.t, progress.energy, kind, held, (gained, variance))
+        self._ports.not_risen(progress.t, progress.energy, kind, (gained, variance))
 
     def climbed(self, reading: float, dt: float) -> None:
         """Judge by a static pressure, Pa, a time, s, after the last, whether its port lives."""
@@ -155,8 +169,9 @@ class LaunchTests:
             ground=ground,
             position=self._errors.position,
             position_sd=2.0 * self._errors.speed_share,
+            lift=progress.lift,
         ):
-            ports.never_moved(progress.t, energy, test.rest, test.lost, density)
+            ports.never_moved(progress.t, energy, test.rest, test.risen, density)
 
 
 def scale_variance(noise: NoiseModel) -> float:

@@ -22,7 +22,7 @@ class AidedSettings:
     gust_length : float
         Its scale length, m: the gust's correlation time is that over the airspeed.
     gust_height : float
-        Height above the launch at which these hold, m; the gust's density is as 1/height; 0: they hold everywhere.
+        Height above the launch at which these hold, m; below and above it is as of `gust`; 0: they hold everywhere.
     shear : float
         How far it is unknown how fast the mean wind along the path grows with the logarithm of the height, m/s: so much
         more may the airspeed wander in a climb; 0: not at all.
@@ -59,11 +59,15 @@ class AidedSettings:
         from below.
     rail_wind_sd : float
         Standard deviation of each, m/s: turbulence, and what a declared wind is off by; 0: no wind is declared.
-    lift_slope : float
+    lift_slope : float or None
         a of α = a n/(ρ V²) + α₀ with the wings out, n being −f_z, kg/m²: mass over half the wing's area and the slope
-        of its lift; 0: the angle of attack is not known. That of fw8, by regression on four of its flights.
-    lift_zero : float
-        α₀, rad.
+        of its lift; 0: the angle of attack is not known. None: the aircraft's own (`uavsim.beliefs`).
+    lift_zero : float or None
+        α₀, rad. None: the aircraft's own.
+    lift_slope_sd, lift_zero_sd : float
+        Standard deviations of both, kg/m² and rad.
+    lift_gust_sd : float
+        Of a vertical gust that changes the angle of attack and not the lift, m/s: of a course that gusts do not move.
     replay : float
         How long before its recognition a launch is replayed from, s; it has to begin on the rail.
     """
@@ -89,8 +93,11 @@ class AidedSettings:
     rail_wind_side: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
     rail_wind_down: Annotated[float, Interval(ge=-50.0, le=50.0)] = 0.0
     rail_wind_sd: Annotated[float, Interval(ge=0.0, le=50.0)] = 0.0
-    lift_slope: Annotated[float, Interval(ge=0.0, le=1000.0)] = 9.45
-    lift_zero: Annotated[float, Interval(ge=-0.5, le=0.5)] = -0.0695
+    lift_slope: Annotated[float, Interval(ge=0.0, le=1000.0)] | None = None
+    lift_zero: Annotated[float, Interval(ge=-0.5, le=0.5)] | None = None
+    lift_slope_sd: Annotated[float, Interval(ge=0.0, le=1000.0)] = 0.0
+    lift_zero_sd: Annotated[float, Interval(ge=0.0, le=0.5)] = 0.01
+    lift_gust_sd: Annotated[float, Interval(ge=0.0, le=20.0)] = 0.0
     replay: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.3
 
 

@@ -11,10 +11,18 @@ one is that low (11 standard deviations), of a shut one all are. Tubes that have
 stand still and the static one rise: then both are named. A differential sensor then reads the same with the other sign.
 Of an absolute one a fall says nothing of the static port. A pressure that has risen by half of r lives, and the test is
 over.
+
+**Odds.** Until then both are possible. A live port has risen by ½ρ (u² + 2uw), a shut one by nothing. Each reading that
+has risen by x, of the noise σ, says
+
+    ln (P_shut/P_live) += ½ (x − ½ρ (u² + 2uw))²/S − ½ x²/σ² + ½ ln(S/σ²),    S = σ² + (ρ u σ_w)² + (`UNSURE` ½ρu²)²
+
+with −w, too, where it is not known from which side the wind comes. If the port is shut V is u ± w by the force alone, Δ
+from what the filter says, and the second moment about that has P_shut (Δ² + σ_w²) more.
 """
 
 from collections.abc import Iterable
-from math import sqrt
+from math import exp, log, sqrt
 
 from uavsim.onboard.airspeed.rest_wind import OPENED, Row
 
@@ -22,6 +30,10 @@ SURE = 15.0  # standard deviations of a reading, by which a live one must have r
 AGREED = 5  # readings in a row that decide, so that no spike does
 SHUT, LIVE = 0.25, 0.5  # of r, below which a port is shut, and above which it lives
 FEWEST = 3  # readings at rest; fewer say nothing of the pressure there
+# ln of the odds that one port in a thousand is left covered, by hand: a crew looks; and bounds, between which a wrong turn
+# is taken back within some readings; nats that one reading may say, so that no spike decides
+PRIOR, LEAST_ODDS, MOST_ODDS, SAID = -7.0, -16.0, 5.0, 3.0
+UNSURE = 0.1  # share of ½ρu² that is not known: the force's scale, the air's density, the port's error. By hand
 DEVIATIONS, MOST_WIND = 3.0, 9.0  # of the wind; m/s, of what is not known, or no stroke would decide. By hand
 
 
@@ -37,16 +49,21 @@ class StrokeTest:
     ----------
     open : bool
         Whether it is still going on.
+    shut : float
+        P_shut.
     """
 
     __slots__ = (
-        "_dead", "_density", "_differential", "_lives", "_static_rest", "_total_rest", "_variance", "_wind", "open",
+        "_along", "_dead", "_density", "_differential", "_lives", "_odds", "_sided", "_static_rest", "_total_rest",
+        "_variance", "_wind", "open", "shut",
     )  # fmt: skip
 
     def __init__(self, differential: bool = False) -> None:
         self.open, self._differential = False, differential
         self._lives = self._dead = 0
         self._total_rest = self._static_rest = self._variance = self._wind = self._density = 0.0
+        self._along, self._sided = (0.0, 0.0), True
+        self._odds, self.shut = PRIOR, 0.0
 
     def begin(
         self,
@@ -55,7 +72,8 @@ class StrokeTest:
         tare_end: float,
         end: float,
         variance: float,
-        wind: float,
+        wind: tuple[float, float],
+        sided: bool,
         density: float,
     ) -> None:
         """Begin with what was read at rest.
@@ -68,8 +86,10 @@ class StrokeTest:
             Those of conversions between them count, s.
         variance : float
             Of a reading of the total pressure, Pa².
-        wind : float
-            w⁺, m/s.
+        wind : tuple of float
+            w along the launch, m/s, and its standard deviation.
+        sided : bool
+            Whether it is known from which side it comes.
         density : float
             Of the air, kg/m³.
         """
@@ -80,6 +100,7 @@ class StrokeTest:
             if t_static <= end and static == static:
                 statics.append(static)
         self._lives = self._dead = 0
+        self._odds, self.shut = PRIOR, 0.0
         self.open = min(len(totals), len(statics)) >= FEWEST and density > 0.0
         if not self.open:
             return
@@ -87,7 +108,8 @@ class StrokeTest:
         statics.sort()
         self._total_rest, self._static_rest = totals[len(totals) // 2], statics[len(statics) // 2]
         self._variance = variance * (1.0 + 1.6 / len(totals))
-        self._wind, self._density = wind, density
+        self._wind, self._density = most_wind(*wind), density
+        self._along, self._sided = wind, sided
 
     def add(self, total: float, static: float, gained: float, unknown: float) -> str:
         """Take a reading.
@@ -106,10 +128,13 @@ class StrokeTest:
         str
             "frozen": the total pressure has not risen. "swapped": the static one has, in its place. "" for nothing.
         """
-        rise = 0.5 * self._density * gained * (gained - 2.0 * self._wind)
-        if gained <= 0.0 or rise < SURE * sqrt(self._variance + unknown * unknown):
+        if gained <= 0.0:
             return ""
-        risen = total - self._total_rest
+        variance, risen = self._variance + unknown * unknown, total - self._total_rest
+        self._weigh(risen, gained, variance)
+        rise = 0.5 * self._density * gained * (gained - 2.0 * self._wind)
+        if rise < SURE * sqrt(variance):
+            return ""
         if risen > LIVE * rise:
             self._lives, self._dead = self._lives + 1, 0
             self.open = self._lives < AGREED
@@ -122,6 +147,19 @@ class StrokeTest:
         other = -risen if self._differential else static - self._static_rest
         swapped = other > LIVE * rise
         return "swapped" if swapped else "frozen"
+
+    def _weigh(self, risen: float, gained: float, variance: float) -> None:
+        """Weigh a shut port against a live one by what a reading has risen by, Pa, of a variance, Pa²."""
+        (along, sd), slope = self._along, self._density * gained
+        own = 0.5 * slope * gained
+        spread = variance + (slope * sd) ** 2 + (UNSURE * own) ** 2
+        off = risen - own - slope * along
+        if not self._sided:
+            off = min(off, risen - own + slope * along, key=abs)
+        said = 0.5 * (off * off / spread - risen * risen / variance + log(spread / variance))
+        odds = self._odds + min(max(said, -SAID), SAID)
+        self._odds = min(max(odds, LEAST_ODDS), MOST_ODDS)
+        self.shut = 1.0 / (1.0 + exp(-self._odds))
 
 
 def most_wind(wind: float, sd: float) -> float:

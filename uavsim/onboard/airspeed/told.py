@@ -15,9 +15,10 @@ from math import sqrt
 
 from uavsim.onboard.airspeed.air import SLOWEST
 from uavsim.onboard.airspeed.corrections import Corrections
+from uavsim.onboard.airspeed.die_warmth import DOUBT, DieWarmth
 from uavsim.onboard.airspeed.energy_model import isentropic
-from uavsim.onboard.airspeed.first_climb import FirstClimb
 from uavsim.onboard.airspeed.interface import NoiseModel
+from uavsim.onboard.airspeed.launch_tests import LaunchTests
 from uavsim.onboard.airspeed.paper import TRANSONIC
 from uavsim.onboard.airspeed.port_errors import PortErrors
 from uavsim.onboard.airspeed.ports import Ports
@@ -43,13 +44,15 @@ class Told:
         The greatest airspeed that the aircraft can have, m/s.
     progress : Progress
         Where the filter stands.
-    corrections, errors, climb, ports : Corrections, PortErrors, FirstClimb, Ports
+    corrections, errors, tests, ports : Corrections, PortErrors, LaunchTests, Ports
         What else is in doubt.
+    die : DieWarmth
+        How far the thermometer is behind the air.
     """
 
     __slots__ = (
-        "_climb", "_corrections", "_differential", "_errors", "_fastest", "_ports", "_progress", "_scale_share",
-        "_static_share", "_temperature_share", "_warmed_share",
+        "_climb", "_corrections", "_die", "_differential", "_errors", "_fastest", "_ports", "_progress", "_scale_share",
+        "_static_share", "_stroke", "_temperature_share", "_tests", "_warmed_share",
     )  # fmt: skip
 
     def __init__(
@@ -60,11 +63,13 @@ class Told:
         *,
         corrections: Corrections,
         errors: PortErrors,
-        climb: FirstClimb,
+        tests: LaunchTests,
+        die: DieWarmth,
         ports: Ports,
     ) -> None:
         self._progress, self._corrections, self._errors = progress, corrections, errors
-        self._climb, self._ports, self._fastest = climb, ports, fastest
+        self._tests, self._ports, self._fastest = tests, ports, fastest
+        self._die, self._climb, self._stroke = die, tests.climb, tests.stroke
         self._differential, self._scale_share = noise.differential, 0.5 * noise.difference_scale_sd
         self._temperature_share, self._static_share = 0.5 * noise.temperature_sd, 0.5 * noise.static_offset_sd
         self._warmed_share = 0.5 * noise.thermometer_recovery_sd
@@ -92,9 +97,15 @@ class Told:
         if hidden > 0.0:
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
+        if self._stroke.open:
+            variance += self._tests.in_doubt(speed)
         variance += ports.between
+        lone = ports.static.faulty and (ports.static.shut or not self._differential)
+        if lone:
+            variance += ports.astray(t)
         warm = self._temperature_share * speed / air.temperature
-        square = warm * warm
+        behind = 0.5 * DOUBT * self._die.behind * speed / air.temperature
+        square = warm * warm + behind * behind
         if self._static_share > 0.0:
             dense = self._static_share * speed / static
             square += dense * dense
@@ -115,6 +126,6 @@ class Told:
             and air.measured
             and (sd < COASTED or (t - self._corrections.fresh < FRESH and not ports.total.faulty))
             # without it V and the climb are hardly told apart, but for a difference that has been read
-            and not (ports.static.faulty and (ports.static.shut or not self._differential))
+            and not lone
         )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static
