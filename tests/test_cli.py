@@ -364,7 +364,7 @@ def test_a_bug_of_ours_does_not_pass_for_wrong_input(run: Run, tmp_path: Path, m
         ("replay log.csv --map t=time,fx=ay", "log.csv: has no column 'ay'; it has time, ax, p"),
         ("replay log.csv --map t=time,fx=ax,fy=ax,fz=p", "log.csv: 2 rows with a time are too few"),
         ("replay log.csv --map time", "'time': give it as ours=theirs"),
-        ("replay log.csv --set seed=1", "--set: 'seed=1': of a log only detector.… can be set"),
+        ("replay log.csv --set seed=1", "--set 'seed': of a log only air_data.…, accelerometer.…, estimator.…"),
         ("replay log.csv --set detector.treshold=1", "did you mean 'detector.threshold'?"),
         ("replay imu.csv --map t=time,fx=a[1],fy=z,fz=z --out full", "full is not empty"),
         ("sensors bmp39", "nearest: bmp390"),

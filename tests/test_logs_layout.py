@@ -61,7 +61,10 @@ def said(recording: Recording) -> str:
         (b"\xef\xbb\xbf" + TEXT.encode(), ""),
         (TEXT.replace("\n", "\r"), ""),
         (gzip.compress(TEXT.encode()), ""),
-        (TEXT.replace(NAMES, "Time (s),Accel_X [m/s^2],Accel_Y [m/s^2],Accel_Z [m/s^2]"), "fx is taken from column"),
+        (
+            TEXT.replace(NAMES, "Time (s),Accel_X [m/s^2],Accel_Y [m/s^2],Accel_Z [m/s^2]"),
+            "fx, fy, fz are taken from columns 'Accel_X [m/s^2]'",
+        ),
     ],
 )
 def test_however_a_table_is_laid_out_the_launch_is_found(tmp_path: Path, content: str | bytes, remark: str) -> None:

@@ -6,10 +6,11 @@ which the pad's reading is taken: a rocket on its pad points up, and 1 g is adde
 """
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sensors.bench_log import Source
+from sensors.tables import brief
 from uavsim.logs.recording import AXES, SERIES
 from uavsim.truth import STANDARD_GRAVITY
 
@@ -125,20 +126,25 @@ def _take(
     for names in called:
         if names[0] not in plain:
             continue
+        taken: dict[str, tuple[str, float]] = {}
         for name, one in zip(names, ours, strict=True):
-            if name not in plain:
-                continue
-            column, unit = plain[name]
-            factor = UNITS[kind].get(unit.casefold())
-            if factor is None:
-                factor = TIMES[name] if kind == "t" else 1.0
-            sources[one] = Source(column, factor)
-            if column != one:
-                said = f" times {factor:.10g}" if factor != 1.0 else ""
-                remarks.append(f"{one} is taken from column '{column[:60]}'{said}")
-            elif factor != 1.0:
-                remarks.append(f"{one} is taken to be in {unit}")
+            if name in plain:
+                column, unit = plain[name]
+                factor = UNITS[kind].get(unit.casefold())
+                taken[one] = column, factor or (TIMES[name] if kind == "t" else 1.0)
+        sources |= {one: Source(column, factor) for one, (column, factor) in taken.items()}
+        if any(column != one or factor != 1.0 for one, (column, factor) in taken.items()):
+            remarks.append(_taken(taken))
         return
+
+
+def _taken(taken: Mapping[str, tuple[str, float]]) -> str:
+    """Say which columns are taken for ours."""
+    columns = ", ".join(repr(brief(column)) for column, _ in taken.values())
+    scales = {factor for _, factor in taken.values()}
+    said = "" if scales == {1.0} else f" times {', '.join(f'{factor:.10g}' for factor in sorted(scales))}"
+    many = len(taken) > 1
+    return f"{', '.join(taken)} {'are' if many else 'is'} taken from column{'s' if many else ''} {columns}{said}"
 
 
 # -- formats ---------------------------------------------------------------------------------------------------------
@@ -200,6 +206,3 @@ def _altos(names: Sequence[str]) -> Usual | None:
         "temperature is brought from °C to K"
     )
     return Usual(sources, (said,))
-
-
-Told = Callable[[Sequence[str]], Usual | None]

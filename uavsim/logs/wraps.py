@@ -11,6 +11,8 @@ from uavsim.logs.recording import Array
 from uavsim.truth import STANDARD_GRAVITY
 
 BITS = (8, 10, 12, 13, 14, 16)
+RANGES = (2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0, 100.0, 200.0)  # g, of parts
+BEYOND = 1.25  # share of what was seen that the range may have at most: its ends are seldom met
 NEAR_END = 0.85  # share of the range beyond which both sides of a jump lie
 SYMMETRIC = 0.05  # share by which the ends may differ in size
 LEAST_RANGE = 1.5 * STANDARD_GRAVITY  # m/s²; below, vibration about 0 does it
@@ -74,12 +76,16 @@ def _unit(f: Array) -> float:
 
 
 def _width(high: float, low: float, unit: float) -> float:
-    """Width of the range: that of an integer, if the counts are seen; else what lies between the ends."""
+    """Width of the range: of an integer, if the counts are seen; of a part; else what lies between the ends."""
     if unit > 0.0:
         for bits in BITS:
             width = unit * 2.0**bits
             if (high - low) <= width <= 1.05 * (high - low) + 2.0 * unit:
                 return width
+    for most in RANGES:
+        width = 2.0 * most * STANDARD_GRAVITY
+        if (high - low) <= 1.001 * width and width <= BEYOND * (high - low):
+            return width
     return high - low + max(unit, 0.0)
 
 
