@@ -142,16 +142,18 @@ def spread(slopes: dict[str, str], *more: str) -> str:
     return " + ".join([*(times(slope, f"g{j}") for j, slope in slopes.items()), *more])
 
 
-def correct(states: str, name: Namer) -> list[str]:
+def correct(states: str, name: Namer, *, held: str = "") -> list[str]:
     """Write x ← x + K ν and P ← P − K g, with K = g over the innovation's variance.
 
     A state that is not learned (`LEARNED`) has K = 0: it stays, and P with it, but what the others have to do with it
-    changes as theirs do (Schmidt's filter).
+    changes as theirs do (Schmidt's filter). Of those that are `held` for certain nothing is written but the last.
     """
     gains = {i: f"g{i} / spread" if i != LEARNED else f"self._learns * g{i} / spread" for i in states}
-    lines = [f"k{i} = {gain}" for i, gain in gains.items()]
-    lines += [f"{name(i)} += k{i} * innovation" for i in states]
+    lines = [f"k{i} = {gain}" for i, gain in gains.items() if i not in held]
+    lines += [f"{name(i)} += k{i} * innovation" for i in states if i not in held]
     for i, j in pairs(states):
+        if i == j and i in held:
+            continue
         gained, other = (i, j) if i != LEARNED or i == j else (j, i)
         lines.append(f"{name(i + j)} -= k{gained} * g{other}")
     return lines

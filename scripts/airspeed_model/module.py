@@ -9,7 +9,7 @@ from string import Template
 import sympy as sp
 
 from airspeed_model import physics
-from airspeed_model.covariance import NAMES, Prediction, by_rows, correct, entry, pairs, spread, times, towards
+from airspeed_model.covariance import LEARNED, NAMES, Prediction, by_rows, correct, entry, pairs, spread, times, towards
 from airspeed_model.physics import H_STATIC, H_TOTAL, Q_RAIL, STATES, F, Q
 from airspeed_model.printing import code
 
@@ -246,8 +246,8 @@ def updates() -> dict[str, str]:
         "total_g": block(towards(known, STEADY, local), 3),
         "total_off": taken_off(known),
         "total_spread": spread(known, "total_variance", bend),
-        "correct_3": block(correct(STEADY, local), 3),
-        "correct_4": block(correct(STEADY, local), 4),
+        "correct_3": block(correct(STEADY, local, held=LEARNED), 3),
+        "correct_4": block(correct(STEADY, local, held=LEARNED), 4),
         "bent": block(bent(), 2),
         "own_static_g": block(towards(static, ALL, own), 2),
         "own_static_off": taken_off(static, own),

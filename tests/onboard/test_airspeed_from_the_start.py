@@ -1,5 +1,7 @@
 """Sensors that are broken before the launch: the rail, the stroke, the first climb, and what is told then."""
 
+import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 from references.manoeuvres import LAUNCH, NOISE, Flight, believed, fly, run, spoil
 
 from uavsim.onboard.airspeed import AidedFilter, EstimatorSettings, first_climb
+from uavsim.onboard.airspeed.felt_climb import FeltClimb
 from uavsim.onboard.airspeed.rail import RailCheck
 from uavsim.onboard.rail_offset import RailOffset
 from uavsim.onboard.readiness import Readiness
@@ -339,3 +342,57 @@ def test_a_gust_that_takes_4_m_per_s_condemns_no_static_port_that_has_risen(rise
             reading, 0.01, told, speed, 1.2, k < 26, ground=speed, position=0.0, position_sd=0.0
         )  # fmt: skip
     assert found is named
+
+
+def _climb_in_a_gust(moves: bool, lift: Callable[[int], float]) -> tuple[bool, float, float]:
+    """Launch at 12° into a gust that hides what V loses; return whether it is shut, when, s, and the height told, m."""
+    test, height, climb = first_climb.FirstClimb(), 0.0, 0.0
+    test.begin(101_325.0, 2.0, 0.2, 0.05)
+    for k in range(300):
+        speed, felt = min(30.0, float(k)), lift(k)
+        climb = math.sin(0.2) * speed if k <= 30 else climb + ((felt if felt == felt else 9.81) - 9.81) * 0.01
+        height += climb * 0.01
+        reading = 101_325.0 - 11.8 * height * moves
+        if test.add(
+            reading, 0.01, speed, speed, 1.2, k < 30, ground=speed, position=0.02, position_sd=0.002, lift=felt
+        ):
+            return True, height, test.risen
+    return False, height, test.risen
+
+
+def test_a_shut_static_port_is_named_within_10_m_though_a_gust_hides_what_v_loses():
+    """D is 0, which said nothing before; the accelerometer feels the climb, and the height that is hidden is told."""
+    shut, height, told = _climb_in_a_gust(moves=False, lift=lambda k: 9.81)
+    assert shut
+    assert 3.0 < height < 9.0
+    assert told == pytest.approx(height, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("moves", "lift"),
+    [
+        (True, lambda k: 9.81),  # it lives
+        (False, lambda k: 9.81 - 30.0 * (30 < k < 51)),  # the path is bent down to level: nothing need move
+        (False, lambda k: math.nan),  # nobody knows
+    ],
+)
+def test_a_static_port_is_not_named_without_a_climb_that_it_does_not_show(moves, lift):
+    """An open port, level flight behind the rail, and an accelerometer that is silent."""
+    assert not _climb_in_a_gust(moves, lift)[0]
+
+
+def test_the_height_that_is_felt_is_the_one_that_is_flown():
+    """Against a path that is bent by hand, with a headwind: V is not the speed over the ground."""
+    felt, height, angle, ground = FeltClimb(math.sin(0.2), 0.0), 0.0, 0.2, 0.0
+    gained = 0.0
+    for k in range(230):
+        pushed = k < 30
+        along, turn = (90.0 if pushed else 0.0), (0.0 if pushed else -0.05)  # m/s² over the ground, rad/s
+        ground += 0.01 * along
+        angle += 0.01 * turn
+        height += 0.01 * ground * math.sin(angle)
+        gained += 0.01 * (along + 9.81 * math.sin(angle))
+        felt.add(0.01, ground + 0.3, gained, ground, 9.81 * math.cos(angle) + ground * turn)
+    assert height > 8.0
+    assert felt.height == pytest.approx(height, abs=0.5)
+    assert 0.5 < felt.height_sd < 2.5

@@ -257,6 +257,7 @@ def test_one_pass_equals_the_three_calls(speed):
     beyond = 0
     for f in (three, one):
         f.know_push()
+        f.hold_difference()
     for k in range(400):
         dt, gained, ahead = generator.uniform(0.004, 0.012), generator.normal(0.0, 0.02), generator.normal(0.0, 0.2)
         spike = 100.0 if k % 50 == 49 else 0.0

@@ -5,6 +5,7 @@ Flights are drawn from the filter's own model (`references.matched`), ports made
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -291,6 +292,51 @@ def test_a_port_that_is_still_shut_is_not_taken_back():
     read = 1000.0 + wander + NOISE * generator.standard_normal(6000)
     assert not any(back.hear(0.01 * k, z, z, 0.0, 1.0) for k, z in enumerate(read.tolist()))
     assert any(back.hear(60.0 + 0.01 * k, z + 40.0, z + 40.0, 0.0, 1.0) for k, z in enumerate(read[:200].tolist()))
+
+
+def test_a_rough_spell_of_noise_is_no_life():
+    """Nine readings of 2.3 standard deviations, up and down: in one flight such a spell took a shut port back."""
+    back = Readmission(NOISE**2, 0.007)
+    back.flag(0.0, 1000.0, NOISE**2)
+    size = [0.9 if k not in range(300, 309) else 2.3 for k in range(600)]
+    read = [1000.0 + NOISE * one * (-1.0) ** k for k, one in enumerate(size)]
+    assert not any(back.hear(0.01 * k, z, z, 0.0, 1.0) for k, z in enumerate(read))
+
+
+def test_a_port_that_stands_elsewhere_is_not_taken_back_by_a_filter_that_meets_it():
+    """The push ends, the shut pressure is 14 Pa another, and 7 s later the coasting filter comes by: that was a flight.
+
+    What takes it back is a change that leads to where the filter is.
+    """
+    generator, back = np.random.default_rng(7), Readmission(NOISE**2, 0.007)
+    back.flag(0.0, 1000.0, 1.0)
+    read = (1014.0 + NOISE * generator.standard_normal(1400)).tolist()
+    assert not any(
+        back.hear(0.01 * k, z, z, 5.0 * max(0.0, 7.0 - 0.01 * k), 1.0) for k, z in enumerate(read)
+    )  # fmt: skip
+    assert any(back.hear(14.0 + 0.01 * k, z + 40.0, z + 40.0, 0.0, 1.0) for k, z in enumerate(read[:200]))
+
+
+def test_a_port_that_has_not_risen_is_held_by_the_pressure_that_is_read_next():
+    """Not by a reading of the push, which moves a membrane by more than noise."""
+    generator, back = np.random.default_rng(8), Readmission(NOISE**2, 0.007)
+    back.flag(0.0, NAN, NOISE**2)
+    read = (1014.0 + NOISE * generator.standard_normal(500)).tolist()
+    assert not any(back.hear(0.01 * k, z, z, 0.0, 1.0) for k, z in enumerate(read))
+
+
+@pytest.mark.parametrize("gusts", [False, True])
+def test_a_port_that_has_not_risen_has_to_show_the_gusts_that_are_declared(gusts):
+    """A step that agrees is no life where turbulence is declared; a port that wanders by 25 Pa in 0.1 s is."""
+    watch = TotalWatch(AidedSettings(gust_sd=1.0), variance=NOISE**2, walk=0.007)
+    energy = SimpleNamespace(coast_from=lambda *given: None, p=101_325.0)
+    watch.flag_in_stroke(energy, 0.0, (NAN, NOISE**2), (30.0, 4.0))
+    generator, read, back = np.random.default_rng(9), 1000.0, False
+    for k in range(1, 500):
+        read += generator.normal(0.0, 8.0) if gusts else 0.0
+        reading = read + 40.0 * (k > 100) + generator.normal(0.0, NOISE)
+        back = back or watch.coast(reading, reading, 0.0, 1.0, 0.01 * k)
+    assert back is gusts
 
 
 def test_a_bias_that_the_push_may_have_left_is_no_slide():

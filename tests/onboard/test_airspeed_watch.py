@@ -1,5 +1,7 @@
 """What healthy ports do in turns, pulls, turbulence and at speed is no fault: readings built by hand, test by test."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from uavsim.onboard.airspeed.climb import GRAVITY, ClimbTest
 from uavsim.onboard.airspeed.frozen import FrozenTest
 from uavsim.onboard.airspeed.monitor import CALM, FROZEN, PortMonitor
 from uavsim.onboard.airspeed.ports import SHUT_OUT, Ports
-from uavsim.onboard.airspeed.watch import SHUT
+from uavsim.onboard.airspeed.watch import SHUT, TotalWatch
 from uavsim.onboard.repeats import LEAST
 
 DT = 0.01  # s
@@ -45,6 +47,14 @@ def turn(bank_deg, readings=2000):
 def test_a_level_turn_is_no_climb_that_did_not_come(bank, gusts, sd):
     """However quiet the sensor is, and whether gusts are declared or not: below the level, and far from it."""
     assert static_evidence(np.zeros(2000), turn(bank), sd=sd, speed=32.0, gusts=gusts).max() < 0.7 * SHUT
+
+
+def test_a_turn_is_known_by_what_is_beyond_the_offset_of_f_z():
+    """An accelerometer known to read 5.7 m/s² too little, and 1.0 m/s² too much of it in a turn: 6.7 m/s² of pull."""
+    test = ClimbTest(9.0, 0.0, 9.8, True)
+    test.a = -5.7
+    test.add(0.0, 1.0, GRAVITY + 1.0, WEIGHT, 54.0)
+    assert test._pull.mean == pytest.approx(6.7)
 
 
 @pytest.mark.parametrize("speed", [32.0, 80.0, 145.0])
@@ -134,3 +144,57 @@ def test_a_gust_that_comes_at_once_is_not_shut_out():
     for k in range(2 * SHUT_OUT):
         ports.gate(energy)
         assert energy.widened == float((k + 1) // SHUT_OUT)
+
+
+def slides(speed, gained, bias):
+    """When, s, a drift is told of airspeeds, m/s, what the force gave for each reading, m/s, and b, m/s²; or None."""
+    aided = AidedSettings()
+    air = Air(aided, 1.0)
+    air.begin(288.15)
+    air.density = DENSITY
+    watch = TotalWatch(aided, variance=9.0, walk=0.007)
+    noise = 3.0 * np.random.default_rng(5).standard_normal(len(speed))
+    energy = SimpleNamespace(p=1e5, pp=1.0, s=0.0, vv=0.01, innovation=0.0)
+    total = 0.0
+    for k in range(1, len(speed)):
+        energy.v, energy.b = float(speed[k]), float(bias[k])
+        total += float(gained[k])
+        reading = 1e5 + 0.5 * DENSITY * energy.v**2 * (1.0 + energy.v**2 / (4.0 * 340.0**2)) + float(noise[k])
+        kind = watch.take(energy, k * DT, total, GRAVITY, reading, reading, 0.0, air)
+        if kind:
+            return kind, k * DT
+    return None
+
+
+def test_an_angle_of_attack_that_stays_is_no_slide():
+    """From 37 m/s in 4 s down to 20 m/s and on: c of 11 m makes 1.8 m/s² of b, six of its standard deviations."""
+    t = np.arange(3000) * DT
+    speed = np.interp(t, [12.0, 16.0], [37.0, 20.0])
+    bias = 11.0 * GRAVITY**2 * (speed**-2 - 37.0**-2)
+    assert slides(speed, np.gradient(speed) + bias * DT, bias) is None
+
+
+def test_an_offset_that_stays_is_no_slide():
+    """Of 1.7 m/s² at 83 m/s, which b takes up within some seconds."""
+    bias = 1.7 * (1.0 - np.exp(-np.arange(3000) * DT / 4.0))
+    assert slides(np.full(3000, 83.0), np.full(3000, 1.7 * DT), bias) is None
+
+
+def test_a_port_that_slides_away_from_the_force_is_told():
+    """By 1.8 m/s each second, which b takes up within half a second, from 32 m/s on."""
+    t = np.arange(3000) * DT
+    slid = np.clip(t - 20.0, 0.0, None)
+    kind, when = slides(32.0 - 1.8 * slid, np.zeros(3000), 1.8 * (1.0 - np.exp(-slid / 0.2)))
+    assert kind == "drift"
+    assert when < 22.0
+
+
+@pytest.mark.parametrize(("gust", "off"), [(1.0, 11.25), (0.2, 2.25)])
+def test_without_a_static_port_the_bar_grows_with_the_gusts(gust, off):
+    """15 s after its flag V was 18 m/s off in gusts of 1 m/s, and the filter's own bar 1.5 m/s."""
+    aided = AidedSettings(gust_sd=gust)
+    ports = Ports(aided, Air(aided, 1.0), NoiseModel(total_sd=1.0, static_sd=1.0, temperature_sd=0.5))
+    assert ports.astray(10.0) == 0.0
+    ports.static.since = 10.0
+    assert ports.astray(10.0) == 0.0
+    assert ports.astray(25.0) ** 0.5 == pytest.approx(off)

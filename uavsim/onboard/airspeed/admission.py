@@ -137,7 +137,7 @@ class Admission:
             p_static = nan
         reach = self.sudden + (STEEP if steady else STROKE) * (t - before)
         total, static = self.total.take(channel, reach), self.static.take(p_static, reach)
-        if steady and JUMPED in (total, static):
+        if steady and (total == JUMPED or static == JUMPED):  # noqa: PLR1714 - no tuple for each reading
             self._ports.jumped(t, energy, progress.now, total == JUMPED, static == JUMPED)
         end_total, end_static = self._total_ends.new(t_total, t), self._static_ends.new(t_static, t)
         self._warmth.add(given[2] if end_static == end_static else nan)

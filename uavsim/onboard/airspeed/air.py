@@ -49,6 +49,7 @@ class Air:
         "_aided",
         "_calibration",
         "_falls",
+        "_grows",
         "_lightness",
         "density",
         "gas",
@@ -63,7 +64,8 @@ class Air:
 
     def __init__(self, aided: AidedSettings, calibration: float, lightness: float = 1.0) -> None:
         self._aided, self._calibration, self._lightness = aided, calibration, lightness
-        self._falls = (aided.gust_height > 0.0 and aided.gust_sd > 0.0) or aided.shear > 0.0 or bool(aided.shear_along)
+        self._grows = aided.shear > 0.0 or bool(aided.shear_along)
+        self._falls = (aided.gust_height > 0.0 and aided.gust_sd > 0.0) or self._grows
         self.growth = 0.0
         self.gust, self.shear = gust_density(aided, 0.0), 0.0
         self.ground = self.density = float("nan")
@@ -84,9 +86,11 @@ class Air:
         self.density = static / self.gas
         if self._falls:
             height = (self.ground - static) / (GRAVITY * self.density)
-            self.shear = shear_density(self._aided, height, slope)
-            self.gust = gust_density(self._aided, height) + self.shear
-            self.growth = growth(self._aided, height, slope)
+            self.gust = gust_density(self._aided, height)
+            if self._grows:
+                self.shear = shear_density(self._aided, height, slope)
+                self.gust += self.shear
+                self.growth = growth(self._aided, height, slope)
 
     def speed(self, total: float, static: float) -> float:
         """Return the airspeed of two pressures, Pa; 0 if the total pressure is not above the static one."""

@@ -113,7 +113,7 @@ class ClimbTest:
         if least > LEAST_NOISE and least * least > noise:
             noise = least * least
         pull = lift - GRAVITY
-        self._pull.add(lift, dt)
+        self._pull.add(lift - self.a, dt)  # a turn is known by what is beyond f_z's own offset
         size = self._pull.size - self._gusty
         size = size if size > 0.0 else 0.0
         rate = CLIMB_RATE * CLIMB_RATE + size * size * TURNING

@@ -169,7 +169,7 @@ class Corrections:
         ahead = progress.time - at
         if not -OLDEST < ahead < OLDEST:
             return nan
-        noise = self._static_variance
+        noise, as_read = self._static_variance, reading
         if errors.any:
             if wind.on:
                 noise += wind.unknown(energy.v, energy.p, heat)
@@ -177,9 +177,8 @@ class Corrections:
                 _, off, unknown = errors.off(energy, progress.time)
                 reading, noise = reading - off, noise + unknown
         if ports.static.faulty:
-            ports.hear_static(
-                progress.t, energy, at, reading, reading - energy.p - density * energy.v * ahead * energy.s
-            )
+            off_by = reading - energy.p - density * energy.v * ahead * energy.s
+            ports.hear_static(progress.t, energy, at, as_read, off_by)
             return nan
         if wind.on:
             nis = wind.static(energy, reading, noise, density * energy.v * ahead, heat)

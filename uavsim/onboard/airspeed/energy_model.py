@@ -501,7 +501,7 @@ class EnergyModel:
         total_variance: float,
         heat: float,
     ) -> tuple[float, float]:
-        """Advance in flight and take both pressures, k being known: `predict`, `static` and `total` without a push.
+        """Advance in flight and take both pressures, k and d held: `predict`, `static` and `total` without a push.
 
         The same equations in the same order, of five states, on local variables of which each is loaded and stored
         once: three calls spend as much on that as on sums. Where the total pressure bends over what is not known of v,
@@ -578,12 +578,10 @@ class EnergyModel:
             kb = gb / spread
             kp = gp / spread
             ks = gs / spread
-            kd = self._learns * gd / spread
             v += kv * innovation
             b += kb * innovation
             p += kp * innovation
             s += ks * innovation
-            d += kd * innovation
             vv -= kv * gv
             vb -= kv * gb
             vp -= kv * gp
@@ -598,7 +596,6 @@ class EnergyModel:
             pd -= kp * gd
             ss -= ks * gs
             sd -= ks * gd
-            dd -= kd * gd
 
         # The total pressure
         y = 1.0 + v * v / heat
@@ -624,12 +621,10 @@ class EnergyModel:
                 kb = gb / spread
                 kp = gp / spread
                 ks = gs / spread
-                kd = self._learns * gd / spread
                 v += kv * innovation
                 b += kb * innovation
                 p += kp * innovation
                 s += ks * innovation
-                d += kd * innovation
                 vv -= kv * gv
                 vb -= kv * gb
                 vp -= kv * gp
@@ -644,7 +639,6 @@ class EnergyModel:
                 pd -= kp * gd
                 ss -= ks * gs
                 sd -= ks * gd
-                dd -= kd * gd
 
         self.v, self.b, self.p = v, b, p
         self.s, self.d = s, d

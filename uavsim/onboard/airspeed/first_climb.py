@@ -1,7 +1,7 @@
 """Whether the static port lives: it has to leave the pressure of the rail when the aircraft climbs for the first time.
 
 A static port that was shut before the launch reads that pressure for ever. It hides Δp = ρ g h, and the airspeed is too
-low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what the force says. So three things tell:
+low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what the force says. So four things tell:
 
 * **Life.** Any change of the mean static pressure by more than `MOVED`, of climb or of the port's own error, shows that
   it is open. On a rail of 12° that is so 0.1 m behind its end.
@@ -16,6 +16,9 @@ low by Δp/(ρV) and, since the filter sees no climb, too high by g h/V for what
 
   A static pressure that has not moved while D falls below `LOST` is shut: of the three that could be to blame (a total
   port that begins to leak, an offset of f_x that arises in the push) it is the one that has never shown life.
+* **Climb.** Whatever the air does to V, the accelerometer says how the path bends (`felt_climb`). A port that should
+  have moved by five standard deviations of that height more than it has is shut. In gusts D tells it too late: in a
+  headwind that grows by 2 m/s over the first 10 m of height, and a gust of 1 m/s, −6 m/s is −3.
 
 Until it has shown life, what it may hide is in the bar: ρ g h with the h that the rail's elevation gives, as far as
 `HIGHEST`, or what D says, times √P_shut: the standard deviation of an error that is there with the probability P_shut.
@@ -23,8 +26,9 @@ D limits the h of the rail, too: what is hidden is −½ ρ V D, and D is known 
 `LEVEL` for `SETTLES` after the aircraft should have been at `HIGHEST`, it flies level: an open port need not move.
 """
 
-from math import exp, inf, log, sin, sqrt
+from math import exp, inf, log, nan, sin, sqrt
 
+from uavsim.onboard.airspeed.felt_climb import UNSURE, FeltClimb
 from uavsim.onboard.airspeed.gust import GRAVITY
 
 MEAN = 0.1  # s, of the mean pressure
@@ -46,9 +50,11 @@ LEVEL, SETTLES = -1.0, 2.0
 # taken back within some readings
 PRIOR, LEAST_ODDS, MOST_ODDS = -7.0, -16.0, 5.0
 SAID = 3.0  # nats that one reading may say at the most: no spike decides. By hand
-# share of the height on the rail that is not known: elevation and way. By hand. Off the rail the path bends by what
-# nobody on board knows, and all of the height that the rail points to beyond its end is unknown
-UNSURE = 0.15
+# standard deviations by which the climb that f_z says must be more than the port has moved. By hand: at 3 a shut port
+# off a rail of 12° was named at 2 or 3 m of height, sooner than the 10 m that are asked; 5 leaves a live one more room
+SURE = 5.0
+# Pa/(m/s) of V: a live port's least standard deviation from what the climb says, as `climb.LEAST_OF_V`
+LEAST_OF_V = 0.1
 
 
 class FirstClimb:
@@ -64,25 +70,39 @@ class FirstClimb:
         D, m/s.
     rest : float
         The rail's pressure, Pa.
+    risen : float
+        When it was found shut, the height that it hides, m.
     """
 
     __slots__ = (
-        "_beyond", "_height", "_level_for", "_mean", "_moved_for", "_need", "_odds", "_reference", "_slope",
-        "_variance", "hidden", "lost", "open", "rest",
+        "_beyond", "_climbed_for", "_felt", "_height", "_level_for", "_mean", "_moved_for", "_need", "_odds",
+        "_reference", "_slope", "_variance", "hidden", "lost", "open", "rest", "risen",
     )  # fmt: skip
 
     def __init__(self) -> None:
         self.open = False
         self.hidden = self.lost = self.rest = self._mean = self._height = self._moved_for = self._slope = 0.0
-        self._level_for = 0.0
+        self._level_for = self._climbed_for = self.risen = 0.0
+        self._felt = FeltClimb(0.0, 0.0)
         self._need, self._reference, self._beyond, self._odds, self._variance = inf, 0.0, 0.0, PRIOR, 1.0
 
-    def begin(self, rest: float, sd: float, elevation: float) -> None:
-        """Begin on the rail: its pressure, Pa, the noise of a reading, Pa, and its elevation, rad."""
+    def begin(self, rest: float, sd: float, elevation: float, lift_sd: float = 0.0) -> None:
+        """Begin on the rail.
+
+        Parameters
+        ----------
+        rest, sd : float
+            Its pressure and the noise of a reading, Pa.
+        elevation : float
+            rad.
+        lift_sd : float
+            What f_z may be off by, m/s².
+        """
         self.open = True
         self.rest = self._mean = rest
-        self.hidden = self.lost = self._height = self._moved_for = self._level_for = 0.0
+        self.hidden = self.lost = self._height = self._moved_for = self._level_for = self._climbed_for = 0.0
         self._need, self._slope = max(MOVED, MOVED_SD * sd), sin(elevation) if elevation > 0.0 else 0.0
+        self._felt = FeltClimb(self._slope, lift_sd)
         self._reference, self._beyond, self._odds, self._variance = inf, 0.0, PRIOR, sd * sd
 
     def add(
@@ -97,6 +117,7 @@ class FirstClimb:
         ground: float,
         position: float,
         position_sd: float,
+        lift: float = nan,
     ) -> bool:
         """Take a static pressure; return whether the port is shut.
 
@@ -116,7 +137,10 @@ class FirstClimb:
             Speed over the ground by the force, m/s.
         position, position_sd : float
             The port's known position error and the standard deviation of the rest, shares of q.
+        lift : float
+            −f_z, m/s²; NaN where it is not known.
         """
+        self._felt.add(dt, speed, gained, ground, lift)
         self._mean += (reading - self._mean) * (dt / MEAN if dt < MEAN else 1.0)
         if not -self._need < self._mean - self.rest < self._need:
             self._moved_for += dt
@@ -144,9 +168,20 @@ class FirstClimb:
             hidden = max(hidden, -halved * lost)
         self.hidden = hidden / sqrt(1.0 + exp(-self._odds))
         shut = lost < LOST and self._odds > PRIOR - SAID  # a gust can lose as much while the readings speak for life
+        self.risen = -0.5 * lost * speed / GRAVITY
+        if self._climbs(dt, density * GRAVITY, position * impact, position_sd * impact, speed):
+            shut, self.risen = True, self._felt.height
         if shut or self._flies_level(dt, speed):
             self.open, self.hidden = False, 0.0
         return shut
+
+    def _climbs(self, dt: float, weight: float, error: float, error_sd: float, speed: float) -> bool:
+        """Whether f_z has said for long enough that an open port would have moved; arguments as of `_weigh`."""
+        felt, least = self._felt, LEAST_OF_V * speed
+        spread = (weight * felt.height_sd) ** 2 + error_sd * error_sd + least * least
+        moves = weight * felt.height - error - self._need
+        self._climbed_for = self._climbed_for + dt if moves > 0.0 and moves * moves > SURE * SURE * spread else 0.0
+        return self._climbed_for >= LIVES
 
     def _flies_level(self, dt: float, speed: float) -> bool:
         """Whether the force has shown for long enough that the aircraft has not climbed as its rail points."""

@@ -56,7 +56,6 @@ DOUBT = 0.035  # nats that a reading in still air takes off beside `by_chance`. 
 # tests/onboard/test_airspeed_manoeuvres.py hold the check
 TOGETHER = 5
 Row = tuple[float, float, float, float, float, float]
-NONE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0)
 # NIS beyond which a healthy model that is ahead doubts its own pressure: three standard deviations, by hand
 SURPRISE = 9.0
 
@@ -109,13 +108,14 @@ class FrozenTest:
 
     __slots__ = (
         "_b", "_bb", "_bc", "_bias_density", "_c", "_cc", "_declared", "_last", "_noise", "_pb", "_pc", "_pp",
-        "_pushed", "_sums", "_turn", "_turned", "count", "evidence", "held", "held_variance", "lost", "lost_variance",
+        "_pushed", "_rows", "_turn", "_turned", "count", "evidence", "held", "held_variance", "lost", "lost_variance",
         "misfit", "nis", "pressure", "spread",
     )  # fmt: skip
 
     def __init__(self, variance: float, bias_rate: float, declared: bool, offset_sd: float = 0.0) -> None:
         self._noise, self._declared = variance if declared else variance / TOGETHER, declared
-        self._sums, self._last = NONE, (0.0, 0.0, 0.0)
+        self._rows: list[Row] = []  # fewer than `TOGETHER`
+        self._last = (0.0, 0.0, 0.0)
         self._bias_density = (TURNED * bias_rate if declared else bias_rate) ** 2
         self.evidence = self.misfit = self.pressure = self.held = 0.0
         self.count, self.nis, self.spread = 0, 1.0, variance
@@ -133,14 +133,16 @@ class FrozenTest:
 
     def _gather(self, row: Row) -> Row | None:
         """Take what `add` is told, but slope; return the mean of `TOGETHER` readings and what has come between two."""
-        a, b, c, d, e, f, count = self._sums
-        reading, static, gained, dt, gust, turn = row
-        a, b, c, d, e, f, count = a + reading, b + static, c + gained, d + dt, e + gust, f + turn, count + 1
-        if count < TOGETHER:
-            self._sums = a, b, c, d, e, f, count
+        rows = self._rows
+        rows.append(row)
+        if len(rows) < TOGETHER:
             return None
+        a = b = c = d = e = f = 0.0
+        for reading, static, gained, dt, gust, turn in rows:
+            a, b, c, d, e, f = a + reading, b + static, c + gained, d + dt, e + gust, f + turn
+        rows.clear()
         share, (x, y, z) = 1.0 / TOGETHER, self._last
-        self._sums, self._last = NONE, (c, d, e)
+        self._last = c, d, e
         return share * a, share * b, 0.5 * (x + c), 0.5 * (y + d), 0.5 * (z + e), share * f
 
     def _bend(self, turn: float, dt: float) -> None:

@@ -12,9 +12,10 @@ numbers. What it does not find is a standard deviation, a share of q_c.
 """
 
 from dataclasses import dataclass
-from math import acos, hypot, inf, radians
+from math import acos, cos, hypot, inf, radians
 
 FREE_ANGLE = radians(10.0)  # up to which a probe loses nothing: NACA TN 2530
+FREE = cos(FREE_ANGLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +59,9 @@ class HeadErrors:
 
     def recovery(self, ahead: float) -> float:
         """Return r for the air's speed from ahead over the airspeed, x."""
-        if self.limit == inf:
+        if ahead >= FREE or self.limit == inf:
             return 1.0
-        beyond = acos(min(1.0, max(-1.0, ahead))) - FREE_ANGLE
-        if beyond <= 0.0:
-            return 1.0
+        beyond = acos(max(-1.0, ahead)) - FREE_ANGLE
         share = beyond / (self.limit - FREE_ANGLE)
         return max(0.0, 1.0 - 0.01 * share * share)
 

@@ -112,7 +112,7 @@ class LaunchTests:
         statics = sorted(row[2] for row in rows if row[5] <= end and row[2] == row[2])
         if statics:
             elevation = 0.0 if noise.rail_elevation is None else noise.rail_elevation
-            self.climb.begin(statics[len(statics) // 2], noise.static_sd, elevation)
+            self.climb.begin(statics[len(statics) // 2], noise.static_sd, elevation, noise.lift_offset_sd)
 
     def speed_gained(self) -> float:
         """Return what the force has given since the launch at the filter's instant, m/s, that at rest taken off."""
@@ -151,10 +151,7 @@ class LaunchTests:
         since, gained = progress.time - begun, self.speed_gained()
         rest = self._rest_sd * since
         variance = self._wind_variance + progress.w - w + rest * rest + self._scale_variance * gained * gained
-        held = self._total.last
-        if self._difference.differential:
-            held += self._difference.static - self._difference.zero
-        self._ports.not_risen(progress.t, progress.energy, kind, held, (gained, variance))
+        self._ports.not_risen(progress.t, progress.energy, kind, (gained, variance))
 
     def climbed(self, reading: float, dt: float) -> None:
         """Judge by a static pressure, Pa, a time, s, after the last, whether its port lives."""
@@ -172,8 +169,9 @@ class LaunchTests:
             ground=ground,
             position=self._errors.position,
             position_sd=2.0 * self._errors.speed_share,
+            lift=progress.lift,
         ):
-            ports.never_moved(progress.t, energy, test.rest, test.lost, density)
+            ports.never_moved(progress.t, energy, test.rest, test.risen, density)
 
 
 def scale_variance(noise: NoiseModel) -> float:

@@ -8,8 +8,9 @@ port are as believed:
     drift   S₊ = max(0, S₊ + ν − κ) or S₋ = max(0, S₋ − ν − κ) is above h (Page 1954): the port says ever more, or ever
             less, than the accelerometer allows. A leak, a torn tube. Where the filter has been narrower than its
             innovations for long, ν is taken by their mean square
-    slide   b, what f_x seems to be off by, is beyond five of its standard deviations. Where a port drifts so slowly
-            that each innovation is small, the filter believes in an acceleration that is not there. Told as drift
+    slide   b, what f_x seems to be off by, is beyond five of its standard deviations, and has left its mean of the last
+            10 s by as much (`watch`). Where a port drifts so slowly that each innovation is small, the filter believes
+            in an acceleration that is not there. Told as drift. A b that stays is none: g sin α is 2 m/s² at 20 m/s
 
 What moves no faster than gusts do cannot be told from them by these tests; `leak` sees it later.
 """
@@ -99,7 +100,7 @@ class PortMonitor:
         nis : float
             ν².
         slide : float
-            b² over the variance that b may have.
+            b² over the variance that b may have, or that of its change.
 
         Returns
         -------

@@ -28,6 +28,9 @@ LEAST, MOST = -4.0, 1.0  # nats that a reading may say, so that no spike decides
 # e²/S_t at which a reading's part is clipped, what is taken off, 1 being noise, and the sum from which on a port shows
 # gusts. In turbulence of 1 m/s the mean is 2.3, and it takes some 40 readings. By hand
 MOST_ROUGH, LEAST_ROUGH, ROUGH = 9.0, 1.5, 25.0
+# the sum's greatest value: what is above `ROUGH` of it is gone half a second later, before the port has agreed for long
+# enough. Without it a single step of 40 Pa, which is no gust, was life for two seconds. By hand
+MOST_SHOWN = 2.0 * ROUGH
 GAP = 0.1  # s without a reading, after which the prediction begins anew
 
 
@@ -68,7 +71,7 @@ class SmoothTest:
         self._slope += BETA * error / dt
         size = error * error / self._spread
         self._rough += (size if size < MOST_ROUGH else MOST_ROUGH) - LEAST_ROUGH
-        self._rough = max(self._rough, 0.0)
+        self._rough = min(max(self._rough, 0.0), MOST_SHOWN)
         return self._rough > ROUGH
 
     def add(self, reading: float, dt: float, nis: float, spread: float, straight: bool) -> float:

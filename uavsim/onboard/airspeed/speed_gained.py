@@ -66,14 +66,15 @@ class SpeedGained:
 
     __slots__ = (
         "_beyond", "_clipped", "_f", "_first", "_gap", "_gaps", "_head", "_high", "_lag", "_lift", "_lifts", "_low",
-        "_most", "_most_lift", "_old", "_rate", "_row", "_same", "_shake", "_size", "_stamps", "_sum", "_t", "_u",
-        "_white", "newest", "steps", "stuck",
+        "_most", "_most_lift", "_old", "_rate", "_row", "_same", "_shake", "_size", "_stamps", "_sum", "_t",
+        "_tear", "_u", "_white", "newest", "steps", "stuck",
     )  # fmt: skip
 
     def __init__(self, sd: float, rate: float, size: int = SIZE, lag: float = 0.0, row: float = inf) -> None:
         self._row, self._same, self.stuck = row, 0, False
         self._rate, self._size, self._lag = rate, size, lag
         self._gap = GAP / rate
+        self._tear = 0.25 * (GAP_SD * self._gap) ** 2
         self._shake, self._most, self._most_lift = NOISY * sd, MOST_FORCE, MOST_FORCE
         self._white = sd * sd / rate
         self._t, self._u = [-inf] * size, [0.0] * size  # time stamps
@@ -153,7 +154,7 @@ class SpeedGained:
 
     def torn(self, variance: float, time: float) -> bool:
         """Whether w has grown by so much, m²/s², in a time, s, that readings have been missing."""
-        return variance > 4.0 * self._white * time + 0.25 * (GAP_SD * self._gap) ** 2
+        return variance > 4.0 * self._white * time + self._tear
 
     def lift(self) -> float:
         """Return the mean of −f_z since it was last asked for, m/s²; NaN without one that is plausible."""

@@ -100,6 +100,9 @@ class Told:
         if self._stroke.open:
             variance += self._tests.in_doubt(speed)
         variance += ports.between
+        lone = ports.static.faulty and (ports.static.shut or not self._differential)
+        if lone:
+            variance += ports.astray(t)
         warm = self._temperature_share * speed / air.temperature
         behind = 0.5 * DOUBT * self._die.behind * speed / air.temperature
         square = warm * warm + behind * behind
@@ -123,6 +126,6 @@ class Told:
             and air.measured
             and (sd < COASTED or (t - self._corrections.fresh < FRESH and not ports.total.faulty))
             # without it V and the climb are hardly told apart, but for a difference that has been read
-            and not (ports.static.faulty and (ports.static.shut or not self._differential))
+            and not lone
         )
         return t, speed, sd, raw, total, static, valid, nis_total, nis_static

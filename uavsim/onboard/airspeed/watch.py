@@ -17,7 +17,7 @@ for the difference. The total pressure is taken on; with f_x it tells the climb.
 Which of the two ports is to blame where both seem wrong is weighed in `ports`.
 """
 
-from math import exp, inf
+from math import exp, inf, nan
 
 from uavsim.onboard.airspeed.air import Air
 from uavsim.onboard.airspeed.climb import ClimbTest
@@ -25,8 +25,8 @@ from uavsim.onboard.airspeed.energy import EnergyFilter
 from uavsim.onboard.airspeed.frozen import STILL
 from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.leak import LeakTest
-from uavsim.onboard.airspeed.lift import TURN, Pull
-from uavsim.onboard.airspeed.monitor import PortMonitor
+from uavsim.onboard.airspeed.lift import TURN, TURN_SD, Pull
+from uavsim.onboard.airspeed.monitor import SLIDE, PortMonitor
 from uavsim.onboard.airspeed.readmission import MUTE, Readmission
 from uavsim.onboard.airspeed.settings import AidedSettings
 from uavsim.onboard.airspeed.smooth import LEVEL, SmoothTest
@@ -139,7 +139,8 @@ class TotalWatch:
     __slots__ = (
         "_astray", "_before", "_bias", "_bias_sd", "_bias_time", "_declared", "_force_density", "_gust_variance",
         "_jumped", "_jumped_at", "_last", "_lost", "_near", "_opened", "_opened_by", "_p", "_pull", "_rough",
-        "_silent", "_smooth", "_sound", "_static", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_wandering",
+        "_silent", "_smooth", "_sound", "_static", "_still", "_t", "_taught", "_trusted", "_turn", "_u", "_usual_slide",
+        "_wandering",
         "coasts", "faulty", "port", "undecided",
     )  # fmt: skip
 
@@ -157,6 +158,7 @@ class TotalWatch:
         self._declared, self._force_density = aided.gust_sd > aided.gust_floor, force_density
         self._still = 2.0 * STILL * STILL / aided.gust_length
         self._bias_sd, self._bias_time = aided.bias_sd, aided.bias_time
+        self._usual_slide = SLIDE * aided.bias_sd**2
         self._jumped, self._jumped_at, self._opened = 0.0, -inf, -inf
         self._opened_by = aided.bias_sd**2, -inf
         self._wandering = LeakTest(max(aided.gust_sd, aided.shear), aided.gust_length)
@@ -237,7 +239,27 @@ class TotalWatch:
                 return "leak"
         elif wanders:
             return "leak"
-        return port.add(read, energy.innovation, nis, energy.b * energy.b / self._bias_variance(t))
+        slide = energy.b * energy.b  # of what is usual it need not be known how usual it is
+        slide = slide / self._bias_variance(t) if slide > self._usual_slide else 0.0
+        if slide > SLIDE:
+            slide = self._slide(energy.b, t, v, lift, slide)
+        return port.add(read, energy.innovation, nis, slide)
+
+    def _slide(self, b: float, t: float, v: float, lift: float, alone: float) -> float:
+        """Return b² over its variance, or of its change, if that is less; `alone` is the former.
+
+        A b that has long been there is α, or an offset: a port that drifts by as much had been far from the force.
+        """
+        turned = self._by_force(v, lift) - self._turn
+        off, doubt = b - self._lost - TURN * turned, TURN_SD * turned
+        changed = off * off / (self._bias_variance(t) + doubt * doubt)
+        return changed if changed < alone else alone
+
+    def _by_force(self, v: float, lift: float) -> float:
+        """Return x by the airspeed of the force, for a port that leaks must not look like slow flight."""
+        forced = v - self._wandering.gust
+        forced = forced if forced > LEAST_FLIGHT else LEAST_FLIGHT
+        return lift * lift / (forced * forced)
 
     @property
     def lost(self) -> float:
@@ -247,13 +269,10 @@ class TotalWatch:
     def _wanders(self, v: float, gained: float, lost: float, lift: float, dt: float) -> bool:
         """Whether V has left what the force gave. What f_x is off by is learnt slowly, and not while V is far away.
 
-        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. x goes by the airspeed of
-        the force, for a port that leaks must not look like slow flight. Where c matters too much, it is learnt anew.
+        A turn, or flight at another speed, turns f_x by c (x − x̄) from where it was learnt. Where c matters too much,
+        it is learnt anew.
         """
-        wandering = self._wandering
-        forced = v - wandering.gust
-        forced = forced if forced > LEAST_FLIGHT else LEAST_FLIGHT
-        turn = lift * lift / (forced * forced)
+        wandering, turn = self._wandering, self._by_force(v, lift)
         if not -UNTURNED < turn - self._turn < UNTURNED:
             wandering.forget()
             self._taught = self._taught if self._taught < RELEARNT else RELEARNT
@@ -359,9 +378,15 @@ class TotalWatch:
     def flag_in_stroke(
         self, energy: EnergyFilter, t: float, held: tuple[float, float], speed: tuple[float, float]
     ) -> None:
-        """Flag a port that has not risen in the stroke; the pressure in it, and V by the force, with their variance."""
+        """Flag a port that has not risen in the stroke.
+
+        `held` and `speed` are the pressure in it (`Readmission.flag`), Pa, and V by the force, m/s, each with its
+        variance. Where gusts are declared, it has to show them.
+        """
         self.port.back.flag(t, *held)
         self.faulty = self._astray = self.coasts = True
+        self._silent = self._declared
+        self._smooth.flag(t)
         self.undecided, self._bias = False, 0.0
         energy.coast_from(speed[0], speed[1], 0.0, self._bias_sd * self._bias_sd, 0.0)
         self._p = energy.p
@@ -403,9 +428,11 @@ class StaticWatch:
     ----------
     faulty, shut : bool
         Whether the port is flagged, and whether that is because it has been shut.
+    since : float
+        When it was flagged, s.
     """
 
-    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut")
+    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut", "since")
 
     def __init__(
         self,
@@ -419,7 +446,7 @@ class StaticWatch:
         self._variance, self._offset_sd, self._gusts = variance * apart(alike), offset_sd, gusts
         self._back = Readmission(variance, walk, row)
         self._test, self._t = ClimbTest(variance, 0.0, offset_sd, gusts), -inf
-        self.faulty = self.shut = False
+        self.faulty, self.shut, self.since = False, False, inf
 
     @property
     def suspect(self) -> bool:
@@ -466,11 +493,11 @@ class StaticWatch:
     def flag(self, kind: str, energy: EnergyFilter, t: float, density: float, bias: float) -> None:
         """Flag the port at `t`, s; if it was shut, put the filter to where the climb before that would have led."""
         test = self._test
-        self.faulty, self.shut = True, kind in SHUT_IN
+        self.faulty, self.shut, self.since = True, kind in SHUT_IN, t
         if kind != "frozen":
             self._back.flag(t, kind=kind)
             return
-        self._back.flag(t, test.held, test.held_variance)
+        self._back.flag(t, nan, self._variance)  # as it is read from now on: `held` is freed of the position error
         weight, v = density * GRAVITY, max(energy.v, 1.0)
         off = weight * CLIMB_SD
         p = test.held - weight * test.climb_then * test.since
@@ -484,12 +511,12 @@ class StaticWatch:
         )
 
     def flag_at_rest(
-        self, energy: EnergyFilter, t: float, held: tuple[float, float], lost: float, density: float
+        self, energy: EnergyFilter, t: float, held: tuple[float, float], risen: float, density: float
     ) -> None:
-        """Flag a port that was shut before the launch: half of what V has lost is the height that it hides."""
-        self.faulty = self.shut = True
+        """Flag a port that was shut before the launch, and the height that it hides, m."""
+        self.faulty, self.shut, self.since = True, True, t
         self._back.flag(t, *held)
-        hidden = -0.5 * density * max(energy.v, 1.0) * lost
+        hidden = density * GRAVITY * risen
         energy.leave_static(
             static=(held[0] - hidden, hidden * hidden),
             slope=(energy.s, 1.0),

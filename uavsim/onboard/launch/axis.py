@@ -79,6 +79,8 @@ class OneAxis:
         fx, fy, fz : float
             Specific force in body axes, m/s².
         """
+        if self._recognised:
+            return False
         dt = t - self._t
         late = False
         if not 0.0 < dt <= self._longest:
@@ -87,8 +89,6 @@ class OneAxis:
             late = dt == dt  # else the first
             dt = GAP_PERIODS * self._period if late else self._period
         self._t = t
-        if self._recognised:
-            return False
         f = fx if self._forward else self._sign * (fx, fy, fz)[self._index]
         if self._take(f, dt, late):
             self._recognised = self.triggered = True
