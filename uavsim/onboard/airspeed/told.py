@@ -114,9 +114,8 @@ class Told:
             if wind.on and speed > SLOWEST:
                 position = sqrt(wind.unknown(energy.v, static, air.heat)) / (air.density * speed)
             square += position * position
-        if self._warmed_share > 0.0:
-            warmed = self._warmed_share * speed * speed / air.heat * speed
-            square += warmed * warmed
+        warmed = self._warmed_share * speed * speed / air.heat * speed
+        square += warmed * warmed
         scale = self._scale_share * speed
         sd = sqrt((0.0 if variance < 0.0 else variance) + square + scale * scale)
         total = isentropic(speed, static, air.heat)
