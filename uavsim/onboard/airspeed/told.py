@@ -97,8 +97,7 @@ class Told:
         if hidden > 0.0:
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
-        if self._stroke.open:
-            variance += self._tests.in_doubt(speed)
+        variance += self._tests.in_doubt(speed) if self._stroke.open else 0.0
         variance += ports.between
         lone = ports.static.faulty and (ports.static.shut or not self._differential)
         if lone:
