@@ -66,7 +66,7 @@ def test_each_mismatch_is_a_factor_on_its_own_belief(key: str, field: str) -> No
     assert getattr(doubted, field) == pytest.approx(2.0 * getattr(plain, field))
     changed = {name for name in plain.__slots__ if getattr(doubted, name) != getattr(plain, name)}
     together = {
-        "lag": {"total_window", "static_window", "total_lag", "static_lag"},
+        "lag": {"total_window", "static_window", "total_lag", "static_lag", "die_lag"},
         "accelerometer_offset": {"accelerometer_offset_sd", "lift_offset_sd", "side_offset_sd"}
         | {"accelerometer_wander_sd"}
         | {f"own_{axis}offset_sd" for axis in ("", "side_", "lift_")},
@@ -228,7 +228,8 @@ def test_across_the_wind_turbulence_wanders_half_as_fast_again() -> None:
 def test_declared_turbulence_is_believed_and_none_changes_nothing() -> None:
     calm = believed_air(scenario()).aided
     plain = scenario().estimator.aided
-    assert calm == replace(plain, flight_force=calm.flight_force)
+    lifts = {"lift_slope": 9.45, "lift_zero": -0.0695}  # fw8's own
+    assert calm == replace(plain, flight_force=calm.flight_force, **lifts)
     gusty = scenario("environment.turbulence_wind_20ft=7.5", "flight_computer.height=60")
     found = believed_air(gusty).aided
     assert (found.gust_sd, found.gust_length) == turbulence(EnvironmentSettings(turbulence_wind_20ft=7.5), 60.0, 0.0)

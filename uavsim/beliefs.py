@@ -9,8 +9,8 @@ estimator: this module alone copies them from the one into the other. What no de
 * The turbulence is that which the environment declares (`uavsim.plants.air`), at the height of cruise, along the flight
   path: of the wind's axes, u where the rail points along the wind and v where it points across.
 * So is the humidity of the air.
-* How an aircraft lifts is known of fw8, by regression on four of its flights, and of a rig that has a wing, which gusts do
-  not move. Any other is one of the light UAVs: 60 to 300 N/m² of wing loading at a lift slope of 4.5 to 5.5.
+* How an aircraft lifts is known of fw8, by regression on four of its flights, and of a rig that has a wing, which gusts
+  do not move. Any other is one of the light UAVs: 60 to 300 N/m² of wing loading at a lift slope of 4.5 to 5.5.
 * Where the readings of a thermal differential sensor end, and how coarse they are, depends on the absolute pressure: it
   is that of the field.
 """

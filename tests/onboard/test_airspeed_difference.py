@@ -98,12 +98,14 @@ def test_in_the_stroke_a_difference_that_falls_is_of_swapped_tubes(differential,
     """A total pressure that falls says nothing of the static port."""
     test = StrokeTest(differential)
     rest = [(0.01 * k, ZERO, STATIC, WARM, 0.01 * k, 0.01 * k) for k in range(20)]
-    test.begin(rest, tare_end=-inf, end=0.2, variance=1.5**2, wind=0.0, density=1.225)
+    test.begin(rest, tare_end=-inf, end=0.2, variance=1.5**2, wind=(0.0, 0.0), sided=True, density=1.225)
     said = ""
     for u in range(3, 26, 2):
         if test.open and not said:
             said = test.add(ZERO + sign * 0.5 * 1.225 * u * u, STATIC, u, 0.0)
     assert said == found
+    assert (test.shut > 0.9) == (sign <= 0.0)  # in the bar, both ways, until then
+    assert sign <= 0.0 or test.shut < 1e-4
 
 
 def test_the_correction_for_thin_air_keeps_a_stuck_reading_stuck():

@@ -92,9 +92,13 @@ def test_a_launch_in_wind_is_known_by_its_end(wind: float) -> None:
 def test_gusts_fall_with_height_down_to_those_of_calm_air() -> None:
     declared = AidedSettings(gust_sd=1.0, gust_length=100.0, gust_height=20.0)
     assert gust_density(declared, 20.0) == pytest.approx(0.02)
-    assert gust_density(declared, 40.0) == pytest.approx(0.01)
-    assert gust_density(declared, -5.0) == gust_density(declared, LOWEST) == pytest.approx(0.02 * 20.0 / LOWEST)
-    assert gust_density(declared, 1e6) == pytest.approx(2.0 * 0.04 / 100.0)
+    # (0.177 + 0.000823 h)^0.4/h with h of 131.2, 65.6 and 10 ft
+    assert gust_density(declared, 40.0) == pytest.approx(0.01 * (0.2850 / 0.2310) ** 0.4, rel=1e-3)
+    least = 0.02 * 20.0 / LOWEST * (0.18523 / 0.2310) ** 0.4
+    assert gust_density(declared, -5.0) == gust_density(declared, LOWEST) == pytest.approx(least, rel=1e-3)
+    assert gust_density(declared, 2000.0) == gust_density(declared, 304.8)
+    weak = AidedSettings(gust_sd=0.3, gust_length=100.0, gust_height=20.0)
+    assert gust_density(weak, 1e6) == pytest.approx(2.0 * 0.04 / 100.0)
 
 
 def test_without_a_height_they_are_the_same_everywhere() -> None:

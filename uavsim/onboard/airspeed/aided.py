@@ -144,8 +144,9 @@ class AidedFilter(Estimator):
         )  # fmt: skip
         fastest = FASTEST if settings.fastest is None else settings.fastest
         self._told = Told(
-            noise, fastest, progress, corrections=corrections, errors=errors, tests=tests, ports=ports, die=admission.die
-        )
+            noise, fastest, progress,
+            corrections=corrections, errors=errors, tests=tests, ports=ports, die=admission.die,
+        )  # fmt: skip
         self._hand_over = HandOver(
             self.core, noise, settings, self._tare_end,
             waiting=self._waiting, progress=progress, onset=self._onset,

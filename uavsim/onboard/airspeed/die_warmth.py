@@ -1,15 +1,13 @@
 """What a climb does to a thermometer: its die follows the air with a lag.
 
-The thermometer is one on a pressure sensor's die, and the die follows the air as a first-order lag τ. In a climb the air
-gets colder by the lapse rate Λ, and the die stays behind it by
+The thermometer is one on a pressure sensor's die, and the die follows the air as a first-order lag τ. In a climb the
+air gets colder by the lapse rate Λ, and the die stays behind it by
 
     Λ (h − h'),    τ ḣ' = h − h'
 
 with the height h by the static pressure. By so much the reading is taken for too warm; `DOUBT` of it is not known, for
 the lapse rate is anything between an inversion and that of dry air, and τ is a guess.
 """
-
-from uavsim.onboard.airspeed.gust import GRAVITY
 
 LAPSE = 0.0065  # K/m of the standard atmosphere, ICAO Doc 7488
 # standard deviation of what is taken off, as a share of it: the lapse is 0 … 0.01 K/m, and the lag is known to a third.

@@ -4,9 +4,9 @@
 
     α = a n/(ρ V²) + α₀
 
-a and α₀ are the aircraft's, of a lift curve that is straight, each with what is not known of it. A gust from below turns
-the flow and lifts the aircraft; of a course that gusts do not move (`lift_gust_sd`) the lift does not tell of it. Folded
-wings lift little, and α is small and not known.
+a and α₀ are the aircraft's, of a lift curve that is straight, each with what is not known of it. A gust from below
+turns the flow and lifts the aircraft; of a course that gusts do not move (`lift_gust_sd`) the lift does not tell it.
+Folded wings lift little, and α is small and not known.
 
 **Sideslip.** The rail is left with that of the side wind, β₀. The aircraft then swings into the wind: y = sin β
 is counted as a normal number of mean 0 and of the variance y_g², y_g being what turbulence makes, σ/V. So y² has that

@@ -30,8 +30,8 @@ SURE = 15.0  # standard deviations of a reading, by which a live one must have r
 AGREED = 5  # readings in a row that decide, so that no spike does
 SHUT, LIVE = 0.25, 0.5  # of r, below which a port is shut, and above which it lives
 FEWEST = 3  # readings at rest; fewer say nothing of the pressure there
-# ln of the odds that one port in a thousand is left covered, by hand: a crew looks; and bounds, between which a wrong turn
-# is taken back within some readings; nats that one reading may say, so that no spike decides
+# ln of the odds that one port in a thousand is left covered, by hand: a crew looks; and bounds, between which a wrong
+# turn is taken back within some readings; nats that one reading may say, so that no spike decides
 PRIOR, LEAST_ODDS, MOST_ODDS, SAID = -7.0, -16.0, 5.0, 3.0
 UNSURE = 0.1  # share of ½ρu² that is not known: the force's scale, the air's density, the port's error. By hand
 DEVIATIONS, MOST_WIND = 3.0, 9.0  # of the wind; m/s, of what is not known, or no stroke would decide. By hand

@@ -97,8 +97,7 @@ class Told:
         if hidden > 0.0:
             hidden /= air.density * (speed if speed > SLOWEST else SLOWEST)
             variance += hidden * hidden
-        if self._stroke.open:
-            variance += self._tests.in_doubt(speed)
+        variance += self._tests.in_doubt(speed) if self._stroke.open else 0.0
         variance += ports.between
         lone = ports.static.faulty and (ports.static.shut or not self._differential)
         if lone:
@@ -114,9 +113,8 @@ class Told:
             if wind.on and speed > SLOWEST:
                 position = sqrt(wind.unknown(energy.v, static, air.heat)) / (air.density * speed)
             square += position * position
-        if self._warmed_share > 0.0:
-            warmed = self._warmed_share * speed * speed / air.heat * speed
-            square += warmed * warmed
+        warmed = self._warmed_share * speed * speed / air.heat * speed
+        square += warmed * warmed
         scale = self._scale_share * speed
         sd = sqrt((0.0 if variance < 0.0 else variance) + square + scale * scale)
         total = isentropic(speed, static, air.heat)
