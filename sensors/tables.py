@@ -127,7 +127,7 @@ class CsvTable:
         places = {name: self.names.index(name) for name in columns}
         for i, block in self._some(only) if only is not None and self._places else enumerate(self._blocks()):
             if only is None or i in only:
-                yield self._fast(block, places) or self._slowly(block, places)
+                yield self._read(block, places) or self._read(block, places, texts=True) or self._slowly(block, places)
 
     def _some(self, only: Container[int]) -> Iterator[tuple[int, bytes]]:
         """Yield blocks whose places are known from before."""
@@ -179,8 +179,8 @@ class CsvTable:
             block = END_BLANKS.sub(b"", MANY_BLANKS.sub(b" ", block))
         return block
 
-    def _fast(self, block: bytes, places: Mapping[str, int]) -> dict[str, Array] | None:
-        """Return columns as pyarrow reads them, or None if it does not."""
+    def _read(self, block: bytes, places: Mapping[str, int], *, texts: bool = False) -> dict[str, Array] | None:
+        """Return columns as pyarrow reads them, numbers or texts that may be some, or None if it does not."""
         import pyarrow as pa
         from pyarrow import csv
 
@@ -190,20 +190,25 @@ class CsvTable:
         kinds = {every[place]: pa.timestamp("ns") for place in places.values() if place in layout.dates}
         if any(place in layout.clocks for place in places.values()):
             return None
+        kind = pa.string() if texts else pa.float64()
+        odd = _Odd(layout.separator)
         try:
             table = csv.read_csv(
                 pa.BufferReader(block),
                 csv.ReadOptions(column_names=every, block_size=len(block) + 1, use_threads=False),
-                csv.ParseOptions(delimiter=layout.separator, newlines_in_values=False),
+                csv.ParseOptions(delimiter=layout.separator, newlines_in_values=False, invalid_row_handler=odd.told),
                 csv.ConvertOptions(
-                    column_types={name: kinds.get(name, pa.float64()) for name in every},
+                    column_types={name: kinds.get(name, kind) for name in every},
                     include_columns=list(chosen.values()),
                     decimal_point=layout.decimal,
                 ),
             )
         except pa.ArrowException:
             return None
-        return {name: _floats_of(table.column(own)) for name, own in chosen.items()}
+        if odd.others:
+            return None
+        self._long += odd.longer
+        return {name: _floats_of(table.column(own), layout.decimal) for name, own in chosen.items()}
 
     def _slowly(self, block: bytes, places: Mapping[str, int]) -> dict[str, Array]:
         """Return columns line by line."""
@@ -220,6 +225,20 @@ class CsvTable:
             for name, place in places.items():
                 columns[name].append(_value(values[place], layout.decimal) if place < len(values) else np.nan)
         return {name: np.array(values) for name, values in columns.items()}
+
+
+class _Odd:
+    """Lines of another number of values: those that have more are left out, for others all are read one by one."""
+
+    def __init__(self, separator: str) -> None:
+        self._separator = separator
+        self.longer = self.others = 0
+
+    def told(self, row: Any) -> str:
+        """Count a line; pyarrow calls it."""
+        longer = row.actual_columns > row.expected_columns and not row.text.rstrip().endswith(self._separator)
+        self.longer, self.others = self.longer + longer, self.others + (not longer)
+        return "skip"
 
 
 def _behind(text: bytes, characters: int) -> bytes:
@@ -240,7 +259,12 @@ def _joined(batches: Iterable[Mapping[str, Array]], columns: Collection[str]) ->
     return {name: np.concatenate(values) if values else np.empty(0) for name, values in parts.items()}
 
 
-def _floats_of(column: "pa.ChunkedArray") -> Array:
+def _floats_of(column: "pa.ChunkedArray", decimal: str) -> Array:
+    """Return a column of a text file as numbers."""
+    from pyarrow import compute
+
+    if decimal == "," and _is_text(column.type):
+        column = compute.replace_substring(column, ",", ".")
     return np.concatenate([_floats(chunk) for chunk in column.chunks]) if column.num_chunks else np.empty(0)
 
 
