@@ -95,6 +95,9 @@ def test_a_log_that_lacks_a_pressure_says_which() -> None:
     assert "map p_static=… or baro_height=…" in str(lacking(one))
     assert "makes no airspeed" in str(lacking({"p_static": series("", t, t + FIELD)}))
     assert lacking({}) is None
+    hecto = {**one, "p_static": series("", t, 1013.0 + t)}
+    assert head_of(hecto) is None
+    assert "looks like hPa: map p_static=…*100" in str(lacking(hecto))
     assert "fewer than 20" in str(lacking({**one, "p_static": series("", t[:5], t[:5] + FIELD)}))
 
 

@@ -17,7 +17,7 @@ from uavsim import airdata
 from uavsim.beliefs import believed_air, believed_flow, believed_noise
 from uavsim.cosim import Believed
 from uavsim.logs.gusts import gust_of
-from uavsim.logs.head import Channel, Head
+from uavsim.logs.head import THICKEST, THINNEST, Channel, Head
 from uavsim.logs.quiet import AVERAGED, Rests, Stretch, noise_of, noise_throughout, step_of
 from uavsim.logs.recording import Recording
 from uavsim.onboard.airspeed import EstimatorSettings, NoiseModel
@@ -268,7 +268,7 @@ def _zero(head: Head, stretches: list[Stretch]) -> float:
 
 def _height(head: Head) -> float:
     """Median height of the log's flight above its lowest place, m; 0 where it hardly leaves that."""
-    pressure = head.static.values
+    pressure = np.clip(head.static.values, THINNEST, THICKEST)
     ground = float(np.percentile(pressure, 98.0))
     above = pressure[pressure < ground - STATIC_NEAR]
     if above.size < 0.1 * pressure.size:

@@ -27,6 +27,8 @@ SILENT = 10.0  # periods of the total channel without a reading, from which on r
 FEWEST = 20  # readings of a channel; fewer make no airspeed. By hand
 LOWEST_HEIGHT, HIGHEST_HEIGHT = -2000.0, 20_000.0  # m, of pressure heights that are converted
 FASTEST = 300.0  # m/s, of equivalent airspeeds that are
+THINNEST, THICKEST = 5_000.0, 120_000.0  # Pa, of a log's median static pressure: 20 km, and a high below the sea
+UNITS = (("hPa", 100.0), ("kPa", 1000.0), ("psi", 6894.757), ("bar", 1e5), ("inHg", 3386.389))
 COLD, HOT = airdata.MIN_TEMPERATURE, airdata.MAX_TEMPERATURE  # K
 
 
@@ -130,7 +132,7 @@ def head_of(series: Mapping[str, Series]) -> Head | None:
             f"p_static is made of the pressure height {static.source} by the standard atmosphere: its zero counts as "
             "sea level, or map baro_height=…+height of the field"
         )
-    if static is None:
+    if static is None or _wrong_unit(static):
         return None
     total = found.get("p_difference") or found.get("p_total")
     if total is None and "equivalent_airspeed" in found:
@@ -162,10 +164,24 @@ def lacking(series: Mapping[str, Series]) -> str | None:
         return "a static pressure alone makes no airspeed: map p_total=… or p_difference=… if the log has one"
     if not total or head_of(series) is not None:
         return None
+    if "p_static" in series and (static := _channel(series["p_static"])) is not None and (wrong := _wrong_unit(static)):
+        return f"no airspeed is estimated: {wrong}"
     few = [name for name in (*total, "p_static", "baro_height") if name in series and _channel(series[name]) is None]
     if few:
         return f"no airspeed is estimated: {few[0]} has fewer than {FEWEST} readings"
     return f"no airspeed is estimated: there is {total[0]} and no static pressure; map p_static=… or baro_height=…"
+
+
+def _wrong_unit(static: Channel) -> str:
+    """Say that a static pressure is none of air in Pa; empty if it is one."""
+    middle = float(np.median(static.values))
+    if THINNEST <= middle <= THICKEST:
+        return ""
+    unit = next(
+        (f"{name}: map p_static=…*{factor:g}" for name, factor in UNITS if THINNEST <= middle * factor <= THICKEST), ""
+    )
+    looks = f", which looks like {unit}" if unit else ": map p_static=… to the pressure of the air, Pa"
+    return f"the median of p_static is {middle:.4g}{looks}"
 
 
 def _channel(series: Series) -> Channel | None:
@@ -197,7 +213,7 @@ def _of_height(height: Channel) -> Channel:
 
 def _of_equivalent(speed: Channel, static: Channel) -> Channel:
     p = static.at(speed.t)
-    p = np.where(np.isfinite(p), p, static.values[0])
+    p = np.clip(np.where(np.isfinite(p), p, static.values[0]), THINNEST, THICKEST)
     mach = np.clip(speed.values, 0.0, FASTEST) / (
         airdata.STANDARD_SPEED_OF_SOUND * np.sqrt(p / airdata.STANDARD_PRESSURE)
     )
