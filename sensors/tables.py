@@ -75,8 +75,9 @@ def table_of(held: Held) -> TableFile:
 
 
 def brief(text: str, most: int = LONGEST_NAME) -> str:
-    """Return a text of bounded length."""
-    return text if len(text) <= most else f"{text[:most]}…"
+    """Return a text of bounded length, in which nothing but what is printed stands."""
+    shown = text[:most] if text.isprintable() else "".join(c if c.isprintable() else "\ufffd" for c in text[:most])
+    return shown if len(text) <= most else f"{shown}…"
 
 
 def _too_many(rows: str) -> ValueError:

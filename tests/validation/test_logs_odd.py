@@ -183,3 +183,52 @@ def test_none_is_misread_without_a_word(tmp_path_factory, trait: str, rate: floa
     assert right or any(word in said for word in odd.words), (found, said)
     if odd.words and any(word in ("out of order", "reset", "repeat") for word in odd.words):
         assert any(word in said for word in odd.words), said
+
+
+PIECES = (
+    b",",
+    b";",
+    b'"',
+    b"\n",
+    b"#",
+    b"\t",
+    b"1e400",
+    b"nan",
+    b"-",
+    b"\r",
+    b"\0" * 40,
+    b"2026-01-01 00:00:00",
+    b"\x85",
+)
+
+
+def spoiled(content: bytes, noise: np.random.Generator) -> bytes:
+    """Change, take out and put in some bytes, more of them at the beginning."""
+    found = bytearray(content)
+    for _ in range(int(noise.integers(1, 12))):
+        at = int(noise.integers(len(found) if noise.random() < 0.6 else 300))
+        kind = noise.integers(4)
+        if kind == 0:
+            found[at] = int(noise.integers(256))
+        elif kind == 1:
+            del found[at : at + int(noise.integers(1, 200))]
+        else:
+            found[at:at] = noise.bytes(20) if kind == 2 else PIECES[int(noise.integers(len(PIECES)))]
+    return bytes(found)
+
+
+@pytest.mark.parametrize("form", ["comma", "semicolon", "feather"])
+def test_spoiled_tables_are_read_or_one_line(tmp_path: Path, form: str) -> None:
+    table, written = flight(100.0, 1, launch=True), io.BytesIO()
+    if form == "feather":
+        table.to_feather(written)
+    else:
+        table.to_csv(written, index=False, sep=",;"[form == "semicolon"], decimal=".,"[form == "semicolon"])
+    path, noise = tmp_path / "odd.csv", np.random.default_rng(16)
+    for _ in range(150):
+        path.write_bytes(spoiled(written.getvalue(), noise))
+        try:
+            replay_log(read_log([path]))
+        except ValueError as refused:
+            assert len(str(refused).splitlines()) == 1
+            assert len(str(refused)) < 1500
