@@ -367,6 +367,32 @@ def test_a_reference_that_is_off_is_told_so() -> None:
     assert off["bias"] == pytest.approx(right["bias"] - 2.0, abs=0.02)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("kind", ["huge", "negative", "constant", "gaps"])
+def test_absurd_pressures_cost_the_airspeed_and_not_the_launch(kind: str) -> None:
+    flight = made(end=8.0)
+    total, static = (flight.recording.series[name].values.copy() for name in ("p_difference", "p_static"))
+    if kind == "huge":
+        total[::7], static[::9] = 1e12, -1e12
+    elif kind == "negative":
+        total, static = -np.abs(total), static - 50_000.0 * (np.arange(static.size) % 5 == 0)
+    elif kind == "constant":
+        total[:], static[:] = 3.0, FIELD
+    else:
+        total[200:], static[:200] = np.nan, np.nan
+    of = flight.recording.series
+    absurd = {
+        **of,
+        "p_difference": series("", of["p_difference"].t, total),
+        "p_static": series("", of["p_static"].t, static),
+    }
+    log = Recording(("a",), "", flight.recording.readings, (), absurd)
+    plain = replay_log(log)
+    told = with_airspeed(plain, log, air_settings([]))
+    assert told.score["launch"]["detected_time"] == plain.score["launch"]["detected_time"] is not None
+    json.dumps(told.score, allow_nan=False)
+
+
 def test_a_log_without_pressures_stays_as_it_was() -> None:
     flight = made()
     log = Recording(("a",), "", flight.recording.readings, ())

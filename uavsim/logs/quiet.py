@@ -156,7 +156,7 @@ def noise_throughout(channel: Channel, averaged: float = 0.0) -> float:
     readings say more of the sensor than means.
     """
     found = []
-    for m in _means(channel, averaged):
+    for m in _means(channel, averaged) if channel.t.size > 1 else ():
         means = channel.values[: channel.values.size // m * m].reshape(-1, m).mean(axis=1)
         bends = np.abs(np.diff(means, 2))
         if bends.size >= 8:
