@@ -332,7 +332,7 @@ class AidedFilter(Estimator):
         self._gained.bound(self._flight_force)
         progress.unfold(t)
         if self.flying:  # slow, it has to pitch up, and f_x is turned further from the path than b grants
-            turned = GRAVITY * progress.angles.needed(progress.energy.v, progress.air.density)
+            turned = GRAVITY * progress.angles.unfold(progress.energy.v, progress.air.density)
             progress.energy.widen_bias(turned * turned)
             self.ports.total.jump(progress.time, turned * turned)
 

@@ -27,6 +27,9 @@ from uavsim.onboard.airspeed.shock import Shock
 from uavsim.onboard.airspeed.speed_gained import SpeedGained
 from uavsim.onboard.airspeed.unfolding import Unfolding
 
+SLOW = 24.0  # m/s, from which on an angle of attack is a usual one (`flow_angles`)
+PITCHES = 2.0  # s after the wings are out, in which an aircraft that was slow pitches up and gains speed. By hand
+
 
 class Progress:
     """Where the filter stands, and what moves it.
@@ -163,6 +166,8 @@ class Progress:
             turned, doubt = pulled(lift, v)
             gained -= turned * dt
             variance += doubt * dt
+        if v < SLOW and to < unfolding.end + PITCHES:
+            variance += self.angles.pitching(v, self.air.density) * dt
         self.time, self.u, self.w = to, u, w
         return gained, variance
 
