@@ -241,7 +241,7 @@ class TotalWatch:
             return "leak"
         slide = energy.b * energy.b  # of what is usual it need not be known how usual it is
         slide = slide / self._bias_variance(t) if slide > self._usual_slide else 0.0
-        if slide > SLIDE:
+        if slide > SLIDE and wandering.near:
             slide = self._slide(energy.b, t, v, lift, slide)
         return port.add(read, energy.innovation, nis, slide)
 
@@ -249,6 +249,7 @@ class TotalWatch:
         """Return b² over its variance, or of its change, if that is less; `alone` is the former.
 
         A b that has long been there is α, or an offset: a port that drifts by as much had been far from the force.
+        So it is asked only while V is near it; a leak of 1 s in gusts is then flagged as soon as b says so.
         """
         turned = self._by_force(v, lift) - self._turn
         off, doubt = b - self._lost - TURN * turned, TURN_SD * turned
