@@ -454,8 +454,8 @@ def test_replay_hands_on_the_readings_in_the_order_of_the_flight(monkeypatch: py
     orders: list[list[tuple[float, int]]] = []
 
     class Watched(Onboard):
-        def __init__(self, scenario: Scenario, release_time: float, calibration: tuple[float, float]) -> None:
-            super().__init__(scenario, release_time, calibration)
+        def __init__(self, *given: Any) -> None:
+            super().__init__(*given)
             order: list[tuple[float, int]] = []
             orders.append(order)
             take, take_air = self.accelerometer, self.air_data

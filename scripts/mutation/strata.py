@@ -47,7 +47,7 @@ STRATA: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         tuple(
             f"uavsim/onboard/airspeed/{name}.py"
             for name in (
-                *("aided", "hand_over", "admission", "progress", "corrections", "told", "launch_tests", "port_errors"),
+                *("aided", "hand_over", "admission", "progress", "corrections", "told", "launch_checks", "port_errors"),
                 *("onset", "unfolding", "air", "offset"),
             )
         ),

@@ -47,13 +47,14 @@ def test_airspeed_of_two_pressures():
 
 
 def test_gusts_fall_with_the_height_that_the_pressure_tells():
-    """60 m above the ground, 10 m being where the gusts are declared: a sixth of their density (`gust`), to 1 %."""
+    """60 m above the ground, 10 m being where the gusts are declared: σ_u²/L_u of MIL-F-8785C, h in feet, to 1 %."""
     aided = AidedSettings(gust_sd=2.0, gust_length=150.0, gust_height=10.0)
     air = Air(aided, calibration=1.0)
     air.begin(288.15)
     air.ground = 101_325.0
     air.at(101_325.0 - 60.0 * 9.80665 * 1.2207, 0.0)
-    assert air.gust == pytest.approx(2.0 * 4.0 / 150.0 / 6.0, rel=0.01)
+    thinner = [(0.177 + 0.000823 * h / 0.3048) ** 0.4 / h for h in (60.0, 10.0)]
+    assert air.gust == pytest.approx(2.0 * 4.0 / 150.0 * thinner[0] / thinner[1], rel=0.01)
 
 
 # -- unfolding ---------------------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ A digital filter makes neighbours alike: of a first-order one of the time consta
 noise of σ √(T/(T + τ)) alone.
 """
 
-from math import ceil, erf, hypot, inf, log, nan, sqrt
+from math import ceil, erf, inf, log, nan, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -62,10 +62,9 @@ def longest_row(p: float) -> float:
 
 def force_row(noise: "NoiseModel") -> float:
     """Return how many times a live accelerometer may repeat a number: by the noise of the part alone, unshaken."""
-    sd = noise.accelerometer_white_sd
-    step = noise.accelerometer_step
-    sd = hypot(sd, step / 12.0**0.5) if sd > 0.0 else 0.0
-    return longest_row(alike(sd, step, noise.accelerometer_lag, noise.accelerometer_rate))
+    return longest_row(
+        alike(noise.accelerometer_white_sd, noise.accelerometer_step, noise.accelerometer_lag, noise.accelerometer_rate)
+    )
 
 
 def warmth_row(noise: "NoiseModel") -> float:

@@ -9,7 +9,7 @@ airspeed is valid before the launch is recognised.
 **Flying.** The energy-rate filter (`energy`) begins before the launch, in the readings that were kept (`hand_over`).
 Then each reading of the head is admitted (`admission`), brings the filter to its instant (`progress`), and corrects it
 (`corrections`); what is known at the time of the reading is told (`told`). In the first seconds the launch itself tests
-both ports (`launch_tests`), later they are watched (`ports`).
+both ports (`launch_checks`), later they are watched (`ports`).
 
 **When the filter ends.** Beyond all bounds it has diverged, and the pressures alone are filtered, as before the launch.
 A step of a clock (`uavsim.onboard.stamps`) ends it, too. It then begins anew in flight, with V from the pressures, as
@@ -30,7 +30,7 @@ from uavsim.onboard.airspeed.hand_over import STORM, THICKEST, THINNEST, Beginni
 from uavsim.onboard.airspeed.interface import NoiseModel, pair_variance
 from uavsim.onboard.airspeed.jump_adaptive import JumpAdaptive
 from uavsim.onboard.airspeed.kinds import one_of_ours
-from uavsim.onboard.airspeed.launch_tests import LaunchTests
+from uavsim.onboard.airspeed.launch_checks import LaunchTests
 from uavsim.onboard.airspeed.offset import with_offset
 from uavsim.onboard.airspeed.onset import Onset
 from uavsim.onboard.airspeed.port_errors import PortErrors

@@ -22,7 +22,7 @@ from uavsim.onboard.airspeed.air import SLOWEST
 from uavsim.onboard.airspeed.difference import Difference
 from uavsim.onboard.airspeed.energy_model import GATE
 from uavsim.onboard.airspeed.interface import NoiseModel, reading_variances
-from uavsim.onboard.airspeed.launch_tests import LaunchTests, scale_variance
+from uavsim.onboard.airspeed.launch_checks import LaunchTests, scale_variance
 from uavsim.onboard.airspeed.membrane_push import MembranePush
 from uavsim.onboard.airspeed.onset import ONE_SIDED, Onset
 from uavsim.onboard.airspeed.port_errors import PortErrors

@@ -17,8 +17,9 @@ has risen by x, of the noise σ, says
 
     ln (P_shut/P_live) += ½ (x − ½ρ (u² + 2uw))²/S − ½ x²/σ² + ½ ln(S/σ²),    S = σ² + (ρ u σ_w)² + (`UNSURE` ½ρu²)²
 
-with −w, too, where it is not known from which side the wind comes. If the port is shut V is u ± w by the force alone, Δ
-from what the filter says, and the second moment about that has P_shut (Δ² + σ_w²) more.
+with −w, too, where it is not known from which side the wind comes. A fall beyond `FALLEN` σ is of no live port: it counts
+as one that has not risen. If the port is shut V is u ± w by the force alone, Δ from what the filter says, and the second
+moment about that has P_shut (Δ² + σ_w²) more.
 """
 
 from collections.abc import Iterable
@@ -33,6 +34,7 @@ FEWEST = 3  # readings at rest; fewer say nothing of the pressure there
 # ln of the odds that one port in a thousand is left covered, by hand: a crew looks; and bounds, between which a wrong
 # turn is taken back within some readings; nats that one reading may say, so that no spike decides
 PRIOR, LEAST_ODDS, MOST_ODDS, SAID = -7.0, -16.0, 5.0, 3.0
+FALLEN = 4.0  # standard deviations of a reading; by hand: one in 30 000 of a shut port's
 UNSURE = 0.1  # share of ½ρu² that is not known: the force's scale, the air's density, the port's error. By hand
 DEVIATIONS, MOST_WIND = 3.0, 9.0  # of the wind; m/s, of what is not known, or no stroke would decide. By hand
 
@@ -156,7 +158,8 @@ class StrokeTest:
         off = risen - own - slope * along
         if not self._sided:
             off = min(off, risen - own + slope * along, key=abs)
-        said = 0.5 * (off * off / spread - risen * risen / variance + log(spread / variance))
+        stays = risen * risen / variance if risen > -FALLEN * sqrt(variance) else 0.0
+        said = 0.5 * (off * off / spread - stays + log(spread / variance))
         odds = self._odds + min(max(said, -SAID), SAID)
         self._odds = min(max(odds, LEAST_ODDS), MOST_ODDS)
         self.shut = 1.0 / (1.0 + exp(-self._odds))

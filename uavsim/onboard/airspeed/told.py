@@ -18,7 +18,7 @@ from uavsim.onboard.airspeed.corrections import Corrections
 from uavsim.onboard.airspeed.die_warmth import DOUBT, DieWarmth
 from uavsim.onboard.airspeed.energy_model import isentropic
 from uavsim.onboard.airspeed.interface import NoiseModel
-from uavsim.onboard.airspeed.launch_tests import LaunchTests
+from uavsim.onboard.airspeed.launch_checks import LaunchTests
 from uavsim.onboard.airspeed.paper import TRANSONIC
 from uavsim.onboard.airspeed.port_errors import PortErrors
 from uavsim.onboard.airspeed.ports import Ports
