@@ -17,8 +17,8 @@ has risen by x, of the noise σ, says
 
     ln (P_shut/P_live) += ½ (x − ½ρ (u² + 2uw))²/S − ½ x²/σ² + ½ ln(S/σ²),    S = σ² + (ρ u σ_w)² + (`UNSURE` ½ρu²)²
 
-with −w, too, where it is not known from which side the wind comes. A fall beyond `FALLEN` σ is of no live port: it counts
-as one that has not risen. If the port is shut V is u ± w by the force alone, Δ from what the filter says, and the second
+with −w, too, where it is not known from which side the wind comes. A fall beyond `FALLEN` σ is of no live port: it
+counts as none risen. If the port is shut V is u ± w by the force alone, Δ from what the filter says, and the second
 moment about that has P_shut (Δ² + σ_w²) more.
 """
 
