@@ -362,3 +362,12 @@ def test_a_wind_is_declared_with_the_errors_that_are_believed() -> None:
     assert 0.9 < sum(abs(error) < 1.96 for error in errors) / len(errors) < 0.99
     untold = scenario("environment.wind_speed=10", "environment.wind_from_deg=90", "mismatch.wind=0")
     assert believed_air(untold, calibrated(untold, Streams(1, 0))).aided.rail_wind_sd == 0.0
+
+
+def test_slow_flight_near_the_ground_is_no_shut_static_port() -> None:
+    """8 m/s from behind, noise × 3: it flies 2 m high for 4 s, and α turns f_x by 3 m/s, which had seemed a climb."""
+    part = [f"air_data.{p}.{k}" for p in ("total", "static") for k in ("preset=bmp388", "noise_scale=3")]
+    slow = ["accelerometer.preset=mpu-6050", "accelerometer.noise_scale=3", "air_data.tare=open", "duration=9"]
+    wind = ["environment.wind_speed=8", "environment.wind_from_deg=180", "environment.temperature_offset=25"]
+    flight = uavsim.fly("catapult", seed=150001, overrides=[*part, *slow, *wind, "index=3941"])
+    assert [e for e in flight.events if e["event"] == "airspeed_fault"] == []

@@ -47,8 +47,8 @@ class LaunchTests:
 
     __slots__ = (
         "_acceleration", "_acceleration_sd", "_base", "_difference", "_errors", "_ports", "_progress", "_rest_sd",
-        "_scale_variance", "_sided", "_static", "_total", "_total_variance", "_wind", "_wind_variance", "climb",
-        "stroke",
+        "_scale_variance", "_sided", "_static", "_total", "_total_variance", "_turned", "_wind", "_wind_variance",
+        "climb", "stroke",
     )  # fmt: skip
 
     def __init__(
@@ -67,6 +67,7 @@ class LaunchTests:
         self._acceleration, self._acceleration_sd = noise.acceleration, noise.acceleration_sd
         self._scale_variance, self._wind_variance = scale_variance(noise), wind_sd**2
         self._total_variance = reading_variances(noise)[0]
+        self._turned = 0.0  # what α has turned of f_x since, m/s
         self.stroke, self.climb = StrokeTest(difference.differential), FirstClimb()
         self._base = (0.0, 0.0, 0.0)  # when the launch began, s, and ∫ f_x dt, m/s, and its variance by then
         self._rest_sd, self._wind, self._sided = 0.0, (0.0, 0.0), True
@@ -79,7 +80,7 @@ class LaunchTests:
     def begin(self, rest_sd: float) -> None:
         """Count the speed that the force gives from here on; how well f_x at rest is known, m/s²."""
         progress = self._progress
-        self._base, self._rest_sd = (progress.time, progress.u, progress.w), rest_sd
+        self._base, self._rest_sd, self._turned = (progress.time, progress.u, progress.w), rest_sd, 0.0
 
     def begin_stroke(
         self, rows: Iterable[Row], tare_end: float, end: float, wind: tuple[float, float], *, sided: bool
@@ -157,19 +158,22 @@ class LaunchTests:
         """Judge by a static pressure, Pa, a time, s, after the last, whether its port lives."""
         test, progress, ports = self.climb, self._progress, self._ports
         energy, density, ground = progress.energy, progress.air.density, self.speed_gained()
+        lift = progress.lift
+        if lift > 0.0 and dt > 0.0:  # what α turns of f_x is no climb: 2 m/s in 3 s of slow flight
+            self._turned += lift * progress.angles.down(energy.v, density)[0] * dt
         if ports.total.faulty or ports.static.faulty:
             test.open, test.hidden = False, 0.0
         elif test.add(
             reading,
             dt,
             energy.v,
-            progress.u,
+            progress.u - self._turned,
             density,
             progress.push_end.lasts or progress.wind.on or ground < BEGUN,
             ground=ground,
             position=self._errors.position,
             position_sd=2.0 * self._errors.speed_share,
-            lift=progress.lift,
+            lift=lift,
         ):
             ports.never_moved(progress.t, energy, test.rest, test.risen, density)
 
