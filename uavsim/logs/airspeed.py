@@ -26,6 +26,7 @@ from uavsim.failure import PartError
 from uavsim.logs.beliefs import KEYS, Noise, believed_of_log, known_age, parse_noise, untared
 from uavsim.logs.clocks import Delay, delay_of
 from uavsim.logs.head import Head, head_of, lacking
+from uavsim.logs.pushed import odd_rise
 from uavsim.logs.quiet import Rests, rests_of
 from uavsim.logs.recording import Array, Recording
 from uavsim.logs.taring import Tared, tared
@@ -147,6 +148,8 @@ def air_of(recording: Recording, settings: AirSettings, launches: list[float]) -
             f"no airspeed is estimated: pressures of {head.total.t[0]:.3f} to {head.total.t[-1]:.3f} s and force of "
             f"{recording.span[0]:.3f} to {recording.span[1]:.3f} s share no time, and no launch shows in both"
         )
+    if odd := odd_rise(head, recording.readings, launches):
+        return f"no airspeed is estimated: {odd}"
     rests = rests_of(recording.readings, head)
     spans = cut(recording, head, rests, launches, settings)
     belief = believed_of_log(

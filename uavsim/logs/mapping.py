@@ -369,7 +369,8 @@ def check_unit(force: Array) -> None:
         )
     if middle > TOO_MUCH:
         raise ValueError(
-            f"the median of |f| is {middle:.4g}, which looks like mg or counts and not m/s²: map fx=…*factor and so on"
+            f"the median of |f| is {middle:.4g}, which looks like mg or counts and not m/s²: map "
+            f"fx=…*{STANDARD_GRAVITY / middle:.4g} and so on, by which it is 1 g"
         )
 
 

@@ -118,7 +118,7 @@ def _raw_bias(flight: "Flight") -> float | None:
 
 def _astray(bias: float, raw: float | None) -> str:
     """Say that it is the estimator which is off and not the readings, where that is worth a word."""
-    if raw is None or abs(bias) < ASTRAY:
+    if raw is None or abs(bias) < ASTRAY or abs(raw) >= abs(bias):
         return ""
     return (
         f"the estimate is {bias:+.2f} m/s off in the mean and the airspeed of the readings {raw:+.2f} m/s: it is the "
