@@ -33,10 +33,8 @@ from uavsim.logs.taring import Tared, tared
 from uavsim.onboard.interface import AirReading, Estimate, Reading
 from uavsim.scenario import Scenario, load_scenario
 
-FLIES, HOLDS = (
-    9.0,
-    3.0,
-)  # m/s and s: no fixed wing flies slower, no gust and no breath into a pitot lasts so long. By hand
+# m/s and s: no fixed wing flies slower, no gust and no breath into a pitot lasts so long. By hand
+FLIES, HOLDS = 9.0, 3.0
 BETWEEN = 3.0  # s at rest that part two flights. By hand
 KEPT = 60.0  # s of rest before a launch that are replayed; a flight computer has nothing from an hour of standing about
 

@@ -20,9 +20,8 @@ from uavsim.onboard.airspeed.gust import GRAVITY
 from uavsim.onboard.airspeed.lift import LASTS
 from uavsim.onboard.airspeed.settings import AidedSettings
 
-SWING = (
-    1.5  # s, τ: fw8 swings to a third of the first sideslip in 1.5 s (10 m/s from the side). By hand, of three flights
-)
+# s, τ: fw8 swings to a third of the first sideslip in 1.5 s (10 m/s from the side). By hand, of three flights
+SWING = 1.5
 OVER = 6.0  # τ in which it has died away
 FOLDED = 0.0, 0.05  # rad, α and its standard deviation with the wings folded and while they unfold. By hand
 STEADY_SD = 0.01  # rad, of β beside turbulence: an aircraft that is not trimmed to the last

@@ -58,9 +58,8 @@ SLOW, LEARNT = 10.0, 5.0
 DOUBTED = 6.0  # nats of `smooth`: a port that wanders from the force and shows the gusts does not leak. By hand
 REOPENED = 2.0  # s after a step of f_x, in which the healthy model knows too little of b to tell a leak. By hand
 RELEARNT = 1.0  # s, over which it is averaged after a step of f_x. By hand
-TURNS = (
-    2.5  # m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
-)
+# m/s², beyond which a pull or a turn makes the healthy model wrong, and nothing is said for a leak. By hand
+TURNS = 2.5
 # m/s², of the pull beyond `lift.STRAIGHT`, from which on flight is no longer straight for the test of a shut port: a
 # turn at 36°. Gusts of 1 m/s stay below as a rule. By hand
 BENT = 1.5

@@ -37,9 +37,8 @@ if TYPE_CHECKING:
     from uavsim.onboard.launch.settings import DetectorSettings
 
 BLOCK = 0.1  # s, over which the force is averaged: a launch that begins within it spoils no more than this
-MEMORY = (
-    2.0  # s, of the mean over blocks: of vibration of 3 g rms, or a launch's part of a block, 0.5 m/s² are left in it
-)
+# s, of the mean over blocks: of vibration of 3 g rms, or a launch's part of a block, 0.5 m/s² are left in it
+MEMORY = 2.0
 MOST_AT_REST = 1.25 * GRAVITY  # m/s²: gravity, the zero-g offset of a coarse part (0.2 g), and what vibration leaves
 LOOP = 50.0  # Hz, at which PX4 runs its detector and ArduPlane its main loop
 NO_MEAN = nan, 0.0, 0.0, 0.0  # state of `RestMean` and of `on_rail` before the first force
