@@ -51,3 +51,12 @@ def test_a_port_that_is_covered_is_of_no_unit() -> None:
     head, readings = flight(1.0, differential=True, wind=0.0)
     still = Channel("p_difference", head.total.t, np.random.default_rng(6).normal(0.0, 2.0, head.total.t.size), "d")
     assert odd_rise(Head(still, head.static, None, True), readings, [LAUNCH + 0.02]) == ""
+
+
+def test_a_cover_that_leaks_is_of_no_unit() -> None:
+    """It rises by a hundredth as hPa do, but with the noise of Pa."""
+    head, readings = flight(1.0, differential=True)
+    t = head.total.t
+    leaks = 2.6 * np.clip((t - LAUNCH) / 0.3, 0.0, 1.0) ** 2 + np.random.default_rng(7).normal(0.0, 1.0, t.size)
+    head = Head(Channel("p_difference", t, leaks, "d"), head.static, None, True)
+    assert odd_rise(head, readings, [LAUNCH + 0.02]) == ""

@@ -17,6 +17,9 @@ BEFORE, REST, AFTER = 2.0, 0.5, 1.5  # s: rest from BEFORE to REST before a laun
 SETTLES = 0.3  # s behind the push in which the pressures are looked at. By hand
 LEAST_GAINED = 8.0  # m/s, less than which no push says enough. By hand: 39 Pa
 CLEAR = 8.0  # standard deviations of the mean at rest by which a change is one. By hand
+NOISIEST = (
+    30.0  # Pa, noise of a differential sensor's reading: none is worse, so that a covered port is of no unit. By hand
+)
 FALLS, LEAST, MOST = -0.3, 0.3, 2.5  # r, below which tubes are swapped, and between which a unit is right. By hand
 
 
@@ -36,13 +39,14 @@ def odd_rise(head: Head, readings: Array, launches: Sequence[float]) -> str:
         seen = _change(head, readings, launch)
         if seen is None:
             continue
-        share, clear = seen
+        share, clear, noise = seen
         if not clear or LEAST <= share <= MOST:
             return ""
         if share < FALLS:
             mend = "p_difference=-…" if head.differential else "p_total and p_static the other way round"
             return f"the pressures differ the wrong way in the launch, as of tubes that are swapped: map {mend}"
-        unit = next((one for one in UNITS if LEAST <= share * one[1] <= MOST), None)
+        fits = (one for one in UNITS if LEAST <= share * one[1] <= MOST and noise * one[1] <= NOISIEST)
+        unit = next(fits, None)
         if unit is None or not head.differential:
             return ""
         return (
@@ -52,8 +56,8 @@ def odd_rise(head: Head, readings: Array, launches: Sequence[float]) -> str:
     return ""
 
 
-def _change(head: Head, readings: Array, launch: float) -> tuple[float, bool] | None:
-    """Return r, and whether the pressures have changed beyond their noise; None where the push is not seen."""
+def _change(head: Head, readings: Array, launch: float) -> tuple[float, bool, float] | None:
+    """Return r, whether the pressures have changed beyond their noise, and that; None where the push is not seen."""
     t, along = readings[:, 0], np.nan_to_num(readings[:, 1])
     rest = (t >= launch - BEFORE) & (t < launch - REST)
     push = np.flatnonzero((t >= launch - REST) & (t <= launch + AFTER))
@@ -70,5 +74,6 @@ def _change(head: Head, readings: Array, launch: float) -> tuple[float, bool] | 
         return None
     density = float(np.median(head.static.values)) / (GAS_CONSTANT_DRY_AIR * head.assumed_temperature)
     change = float(np.median(moved) - np.median(quiet))
-    noise = float(np.std(quiet)) / np.sqrt(min(quiet.size, moved.size))
-    return change / (0.5 * density * gained[most] ** 2), abs(change) > CLEAR * noise
+    noise = float(np.std(quiet))
+    clear = abs(change) > CLEAR * noise / np.sqrt(min(quiet.size, moved.size))
+    return change / (0.5 * density * gained[most] ** 2), clear, noise
