@@ -7,6 +7,10 @@
 with a for the accelerometer's bias and for the attitude. The climb is measured by the static pressure itself. So a port
 that shuts in a climb tells of a pull, from the climb to none, which f_z has not felt.
 
+A bank φ takes n cos φ − g of the lift n = −f_z upwards, no more than n − g. So a pull may be a turn's, in which nothing
+climbs, and widens c; what is felt the other way makes the aircraft sink at least by so much, unless n is below 0 and it
+may lie on its back. In gusts every second pull is of that kind.
+
 **Frozen.** The pressure in the tube is a constant. As in `frozen`, the evidence for this model is
 
     W = max(0, W + ½ (ν²/S − e²/S) − δ)
@@ -17,7 +21,7 @@ are no evidence.
 
 from uavsim.onboard.airspeed.frozen import LEAST, MOST, SURPRISE, by_chance
 from uavsim.onboard.airspeed.gust import GRAVITY
-from uavsim.onboard.airspeed.lift import Pull
+from uavsim.onboard.airspeed.lift import STRAIGHT, Pull
 
 # m/s and (m/s)/√s: the climb at the start, and what roll and pitch turn away from f_z. By hand: with a smaller rate a
 # turn would look like a shut port, with a greater one a shut port like a turn
@@ -25,9 +29,6 @@ CLIMB_SD, CLIMB_RATE = 3.0, 0.12
 # s for which a pull (`lift`) may be a turn's and no change of climb: in a level turn at 60° f_z says 1 g, and the climb
 # stays. By hand: as long as it takes to roll; tests/onboard/test_airspeed_manoeuvres.py holds the check
 TURNING = 1.0
-# m/s² more than `lift.STRAIGHT`, up to which, in declared turbulence, it is a gust's, and f_z is believed. By hand: 0.5
-# took a turn at 30° for a climb that did not come; tests/onboard/test_airspeed_watch.py holds the check
-GUSTY = 0.2
 # Pa, and Pa/(m/s) of V, the greater: the least standard deviation of a reading for the comparison. However quiet the
 # sensor is, a gust of 1 m/s moves a static port whose position error is some hundredths of q by so much, and f_z tells
 # the climb no better. By hand: without it 10 of 60 flights of manoeuvres had a quiet static port flagged, with it none
@@ -48,8 +49,6 @@ class ClimbTest:
         Static pressure at the start, Pa.
     offset_sd : float
         Offset of f_z, m/s².
-    gusts : bool
-        Whether turbulence is declared: in still air every pull may be a turn's.
 
     Attributes
     ----------
@@ -67,7 +66,6 @@ class ClimbTest:
         "_aa",
         "_ca",
         "_cc",
-        "_gusty",
         "_noise",
         "_pa",
         "_pc",
@@ -83,8 +81,7 @@ class ClimbTest:
         "since",
     )  # fmt: skip
 
-    def __init__(self, variance: float, static: float, offset_sd: float = 0.0, gusts: bool = True) -> None:
-        self._gusty = GUSTY if gusts else 0.0
+    def __init__(self, variance: float, static: float, offset_sd: float = 0.0) -> None:
         self._noise = max(variance, LEAST_NOISE * LEAST_NOISE)
         self.p = self.held = static
         self._pull = Pull()
@@ -114,7 +111,8 @@ class ClimbTest:
             noise = least * least
         pull = lift - GRAVITY
         self._pull.add(lift - self.a, dt)  # a turn is known by what is beyond f_z's own offset
-        size = self._pull.size - self._gusty
+        mean = self._pull.mean
+        size = (mean if mean > 0.0 else -mean - GRAVITY) - STRAIGHT  # of what may be a turn's
         size = size if size > 0.0 else 0.0
         rate = CLIMB_RATE * CLIMB_RATE + size * size * TURNING
         self.c += (pull - self.a) * dt

@@ -421,8 +421,6 @@ class StaticWatch:
         As of `TotalWatch`.
     offset_sd : float
         Offset of f_z, m/s².
-    gusts : bool
-        As of `ClimbTest`.
 
     Attributes
     ----------
@@ -432,7 +430,7 @@ class StaticWatch:
         When it was flagged, s.
     """
 
-    __slots__ = ("_back", "_gusts", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut", "since")
+    __slots__ = ("_back", "_offset_sd", "_t", "_test", "_variance", "faulty", "shut", "since")
 
     def __init__(
         self,
@@ -441,11 +439,10 @@ class StaticWatch:
         row: float = LEAST,
         alike: float = 0.0,
         offset_sd: float = 0.0,
-        gusts: bool = True,
     ) -> None:
-        self._variance, self._offset_sd, self._gusts = variance * apart(alike), offset_sd, gusts
+        self._variance, self._offset_sd = variance * apart(alike), offset_sd
         self._back = Readmission(variance, walk, row)
-        self._test, self._t = ClimbTest(variance, 0.0, offset_sd, gusts), -inf
+        self._test, self._t = ClimbTest(variance, 0.0, offset_sd), -inf
         self.faulty, self.shut, self.since = False, False, inf
 
     @property
@@ -485,7 +482,7 @@ class StaticWatch:
             return ""
         dt = t - self._t
         if dt > GAP:
-            self._test, dt = ClimbTest(self._variance, reading, self._offset_sd, self._gusts), 0.0
+            self._test, dt = ClimbTest(self._variance, reading, self._offset_sd), 0.0
         self._t = t
         evidence = self._test.add(reading, dt, lift, air[0] * GRAVITY, air[1])
         return "frozen" if evidence > SHUT else ""
