@@ -9,15 +9,16 @@ from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
+import hostile_aircraft as hostile
 import numpy as np
 import pytest
 
 import uavsim
-import hostile_aircraft as hostile
 from uavsim.criteria import outcome, reason
 from uavsim.flight import Flight
 from uavsim.judged import STROKE_LEAD, TRANSITION, Judged
 from uavsim.plants.interface import NEEDED, PARTS, interface_of, problems
+from uavsim.scenario import load_scenario
 
 EVERY = dict.fromkeys((*NEEDED, *(name for names in PARTS.values() for name in names)), "RW")
 FIXED = {b"fcs/wing-cmd-norm": b"own/wing-cmd-norm", b"fcs/wing-pos-norm": b"own/wing-pos-norm"}
@@ -103,7 +104,7 @@ def test_a_motor_on_the_rail_is_a_false_launch_of_a_fixed_wing() -> None:
     flight = fixed()
     early = [{"t": 1.0, "event": "wings_commanded"}, {"t": 1.1, "event": "motor_on"}]
     judged = Judged(
-        flight.scenario,
+        load_scenario("catapult"),
         {"truth": flight.truth, "estimate": flight.estimate, "air_data": flight.air_data},
         [*early[:1], *flight.events],
         flight.score["launch"]["release_time"],
