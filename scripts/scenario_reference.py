@@ -159,7 +159,7 @@ def _shown(value: Any) -> str:
     if value in ((), {}):
         return "none"
     if isinstance(value, tuple):
-        return "`[" + ", ".join(f'"{v}"' if isinstance(v, str) else f"{v:g}" for v in value) + "]`"
+        return "`[" + ", ".join(_shown(v).strip("`") for v in value) + "]`"
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
     return f'`"{value}"`' if isinstance(value, str) else f"`{value:g}`"

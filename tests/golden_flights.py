@@ -282,6 +282,25 @@ FLIGHTS: dict[str, Wanted] = {
         "launcher.peak_specific_force_g=9", "plant.flight_path.wing_loading=6",
         "plant.flight_path.legs=[{duration=2,airspeed=17,climb_deg=8}]",
     )),
+    "by-air": ("catapult", 61, (
+        *NOT_TWICE, "duration=4.5", 'launcher.kind="pneumatic"', "launcher.hang_fire=0.15", "aircraft.mass_factor=1.1",
+        "launcher.pneumatic.pressure=7.5e5", "launcher.pneumatic.vessel=0.017", "launcher.pneumatic.valve=0.031",
+        "launcher.pneumatic.discharge=0.65", "launcher.pneumatic.opening=0.04", "launcher.pneumatic.bore=0.084",
+        "launcher.pneumatic.dead=0.0003", "launcher.pneumatic.ratio=3.9", "launcher.pneumatic.travel=4.8",
+        "launcher.pneumatic.efficiency=0.88", "launcher.pneumatic.carriage=3.1", "launcher.pneumatic.friction=31",
+    )),
+    "by-cord": ("catapult", 62, (
+        *NOT_TWICE, "duration=4.5", 'launcher.kind="bungee"', "launcher.stroke=7.4", "launcher.ends_at=6.1",
+        "launcher.bungee.stiffness=118", "launcher.bungee.stretch=7.3", "launcher.bungee.hysteresis=0.22",
+        "launcher.bungee.mass=1.4", "launcher.force_factor=1.05",
+    )),
+    "by-motor": ("catapult", 63, (
+        *NOT_TWICE, "duration=4.5", 'launcher.kind="electromechanical"', "launcher.stroke=6.2",
+        "launcher.electromechanical.curve=[[0.04,60],[0.3,70],[0.5,0]]", "launcher.electromechanical.bandwidth=5",
+        "launcher.electromechanical.largest_force=850", "launcher.electromechanical.carriage=4",
+        "launcher.electromechanical.friction=22",
+    )),
+    "no-push": ("catapult", 64, (*NOT_TWICE, "duration=3", "launcher.misfire=true")),
     "tunnel-by-mach": ("mach06", 31, (
         "plant.wind_tunnel.machs=[0.2,0.45]", "plant.wind_tunnel.hold=1.5", "plant.wind_tunnel.ramp=0.3",
         "duration=7", *NOT_TWICE,

@@ -58,7 +58,7 @@ def complaint(values: Mapping[str, Any] | None = None, *, file: Path | str = "ca
         ("sensor.vibration_scale=3", "did you mean 'accelerometer.vibration_scale'?"),
         ("duratoin=3", "did you mean 'duration'?"),
         ("zzzzz=1", "there are name, description, duration"),
-        ("launcher=3", "--set: launcher is a group; its keys are peak_specific_force_g, rise"),
+        ("launcher=3", "--set: launcher is a group; its keys are kind, peak_specific_force_g, rise"),
         ("launcher", "--set 'launcher': give it as KEY=VALUE"),
         ("", "--set '': give it as KEY=VALUE"),
         ("=3", "--set '=3': give it as KEY=VALUE"),
@@ -189,7 +189,10 @@ def test_a_wrong_file_is_one_line_that_names_it(tmp_path: Path, content: bytes, 
 @pytest.mark.parametrize(
     ("source", "says"),
     [
-        ("catapalt", "unknown scenario 'catapalt'; did you mean 'catapult'? packaged: blocked-pitot, catapult, "),
+        (
+            "catapalt",
+            "unknown scenario 'catapalt'; did you mean 'catapult'? packaged: blocked-pitot, bungee, catapult, ",
+        ),
         ("", "unknown scenario ''"),
         ("no/such/file", "no/such/file: there is no such file"),
         ("nothing.toml", "nothing.toml: there is no such file"),

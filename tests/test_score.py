@@ -291,7 +291,7 @@ def with_event(name: str, time: float | None) -> tuple[tuple[str, float], ...]:
         ("missed_launch", {"events": ()}),
         ("missed_launch", {"events": (), "ended": "crashed"}),
         ("missed_launch", {"events": (), "change": NEVER_FREE}),
-        ("missed_launch", {"events": (), "change": setting("rail_s", 0.0, RELEASE)}),
+        ("timeout", {"events": (), "change": setting("rail_s", 0.0, RELEASE)}),
         ("missed_launch", {"events": with_event("launch_detected", EXIT + 0.501)}),
         ("cruise", {"events": with_event("launch_detected", EXIT + 0.499)}),
         ("crashed", {"ended": "crashed"}),

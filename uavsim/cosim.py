@@ -38,6 +38,7 @@ from uavsim.onboard.rail_offset import RailOffset
 from uavsim.onboard.readiness import Readiness
 from uavsim.plants.air.weather import moves
 from uavsim.plants.guarded import GuardedPlant
+from uavsim.plants.launchers.push import IDEAL
 from uavsim.plants.plant import STEP_RATES, Plant, Run
 from uavsim.scenario import Scenario, load_scenario, with_kinds
 from uavsim.score import score
@@ -84,6 +85,18 @@ def draw(scenario: Scenario, index: int | None = None) -> Draws:
         plant_seed=streams.integer("plant"),
         calibration=calibrated(scenario, streams),
     )
+
+
+def shaken(scenario: Scenario, draws: Draws, plant: Plant) -> tuple[float, float]:
+    """Specific force that the push comes to, m/s², 0 if nothing rings, and in which time, s."""
+    launcher = scenario.launcher
+    if not scenario.plant.chosen.rings:
+        return 0.0, launcher.rise
+    if launcher.kind != IDEAL and not launcher.misfire:
+        level, rise = plant.shakes  # type: ignore[attr-defined]  # of the plant that has a machine
+        return float(level), float(rise)
+    push = launcher.peak_specific_force_g * STANDARD_GRAVITY * draws.force_factor
+    return 0.0 if launcher.misfire else push, launcher.rise
 
 
 def tare_window(scenario: Scenario, release_time: float) -> airspeed.TareWindow | None:
@@ -242,14 +255,14 @@ class Cosimulation:
         streams = Streams(scenario.seed, scenario.index)
         release = self.draws.release_time
         self.dt = dt = 1.0 / scenario.plant.step_rate
-        push = scenario.launcher.peak_specific_force_g * STANDARD_GRAVITY * self.draws.force_factor
+        push, rise = shaken(scenario, self.draws, self.plant)
         self.vibration = Vibration(
             scenario.vibration,
             streams,
             dt=dt,
             release_time=release,
-            plateau=push if scenario.plant.chosen.rings else 0.0,
-            rise=scenario.launcher.rise,
+            plateau=push,
+            rise=rise,
             scale=scenario.accelerometer.vibration_scale,
         )
         air = scenario.air_data

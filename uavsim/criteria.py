@@ -41,7 +41,7 @@ def outcome(flight: Judged) -> str:
     if acted is not None and (exit_time is None or acted < exit_time):
         return "false_launch"
     limit = np.inf if exit_time is None else exit_time + MISSED_AFTER
-    if detected is None or detected > limit:
+    if flight.true_time is not None if detected is None else detected > limit:  # without a push there is none to miss
         return "missed_launch"
     if flight.ended in ON_GROUND:
         return "landed" if _lands(flight) else "crashed"
@@ -60,11 +60,17 @@ def reason(flight: Judged, ended: str) -> str | None:
         "missed_launch": _missed,
         "crashed": touchdown,
         "landed": touchdown,
-        "timeout": lambda flight: "; ".join(one.said for one in criteria(flight) if not one.met),
+        "timeout": _timeout,
         "cruise": lambda flight: f"cruise all the same: {'; '.join(one.said for one in criteria(flight))}",
         "completed": lambda _: "a rig ends with this outcome, whatever is expected of it",
     }
     return told[ended](flight) or None
+
+
+def _timeout(flight: Judged) -> str:
+    if flight.true_time is None and flight.detected_time is None:
+        return _missed(flight)
+    return "; ".join(one.said for one in criteria(flight) if not one.met)
 
 
 # -- cruise ----------------------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -40,6 +41,7 @@ from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
 from uavsim.plants.choice import PlantSettings
 from uavsim.plants.hangar import find_aircraft, hangar
+from uavsim.plants.launchers.push import IDEAL
 from uavsim.plants.plant import STEP_RATES
 from uavsim.plants.rail import CONTACT_FREQUENCY, DAMPING_RATIO
 from uavsim.plants.settings import AircraftSettings, EnvironmentSettings, LauncherSettings
@@ -210,9 +212,13 @@ class Scenario:
 
     @property
     def push_factor(self) -> float:
-        """What the push gives, over the specific force that the catapult is set for; it knows no aircraft's mass."""
+        """What the push gives, over the specific force that the catapult is set for; it knows no aircraft's mass.
+
+        Of a machine: its drive over the nominal one.
+        """
         factor = self.launcher.force_factor
-        return factor / self.aircraft.mass_factor if self.plant.chosen.flies else factor
+        ideal = self.launcher.kind == IDEAL
+        return factor / self.aircraft.mass_factor if self.plant.chosen.flies and ideal else factor
 
     def with_seed(self, seed: int) -> "Scenario":
         """The same scenario with other draws; only the seed is checked, a flight of many costs no more than that.
@@ -416,8 +422,8 @@ def _check_together(scenario: Scenario) -> None:
         On the first thing that is wrong.
     """
     for check in (
-        _check_name, _check_properties, _check_step, _check_times, _check_air, _check_sensors, _check_cost,
-        _check_vibration,
+        _check_name, _check_properties, _check_step, _check_times, _check_launcher, _check_air, _check_sensors,
+        _check_cost, _check_vibration,
         _check_directions, _check_faults, _check_detector,
     ):  # fmt: skip
         check(scenario)
@@ -659,6 +665,42 @@ def _check_times(s: Scenario) -> None:
         )
 
 
+def _check_launcher(s: Scenario) -> None:
+    """Refuse keys of the launcher that are of another kind, and machines where nothing is launched."""
+    launcher, plain = s.launcher, LauncherSettings()
+    machines = ("pneumatic", "bungee", "electromechanical")
+    others = [name for name in machines if name != launcher.kind]
+    if launcher.kind != IDEAL:
+        others += ["peak_specific_force_g", "rise", "fall"]
+    for name in others:
+        if getattr(launcher, name) != getattr(plain, name):
+            raise SettingError(
+                f"launcher.{name}: is not read by launcher.kind = {launcher.kind!r}",
+                f"launcher.{name}",
+                "launcher.kind",
+            )
+    own = ["kind"] if launcher.kind != IDEAL else []
+    own += [name for name in ("hang_fire", "ends_at", "misfire") if getattr(launcher, name) != getattr(plain, name)]
+    if own and s.plant.chosen.ours and not s.plant.chosen.flies:
+        raise SettingError(
+            f"launcher.{own[0]}: is not read by plant.kind = {s.plant.chosen.name!r}, a rig",
+            f"launcher.{own[0]}",
+            "plant.kind",
+        )
+    if launcher.ends_at is not None and launcher.ends_at >= launcher.stroke:
+        raise SettingError(
+            f"launcher.ends_at = {launcher.ends_at:g} m: must be below launcher.stroke = {launcher.stroke:g} m",
+            "launcher.ends_at",
+            "launcher.stroke",
+        )
+    times = [time for time, _ in launcher.electromechanical.curve]
+    if any(later <= earlier for earlier, later in pairwise(times)):
+        raise SettingError(
+            "launcher.electromechanical.curve: its times must rise from point to point",
+            "launcher.electromechanical.curve",
+        )
+
+
 def _check_air(s: Scenario) -> None:
     """Refuse a law of wind that has none at the launcher."""
     air, height = s.environment, s.launcher.height
@@ -778,6 +820,8 @@ def _check_detector(s: Scenario) -> None:
     if not kind.many_axes and (s.detector.axes == "any" or len(s.detector.axes) != 1):
         raise SettingError(f"detector.axes: must be one signed axis for kind = '{kind.name}'", "detector.axes")
     if kind.need is None:
+        return
+    if s.launcher.kind != IDEAL:  # what a machine gives is known with the aircraft's mass
         return
     push = s.launcher.peak_specific_force_g * STANDARD_GRAVITY * (1.0 + s.launcher.force_spread) * s.push_factor
     need = kind.need(s.detector, push)

@@ -213,7 +213,7 @@ def test_a_sink_that_is_felt_and_not_read_tells_of_a_shut_port(sign):
 
 
 def test_on_its_back_nothing_is_felt_that_must_be_read():
-    """Half a roll in 1 s and on, inverted at -1 g: what f_z says of the climb then is 2 g off, and the port is sound."""
+    """Half a roll in 1 s, and on at -1 g: what f_z says of the climb is 2 g off then, and the port is sound."""
     time = np.arange(1500) * DT
     rolled = np.clip(time - 6.0, 0.0, 1.0)
     lift, bank = GRAVITY * (1.0 - 2.0 * rolled), np.pi * rolled

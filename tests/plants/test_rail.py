@@ -155,11 +155,11 @@ def test_the_push_falls_so_that_it_ends_with_the_stroke() -> None:
         way += speed * step
         time += step
         assert time < RELEASE + 1.0
-    falling = [(t, push) for t, push in history if t > RELEASE + 0.05 and 0.0 < push < 0.999 * box.plateau]
+    falling = [(t, push) for t, push in history if t > RELEASE + 0.05 and 0.0 < push < 0.999 * box.machine.peak]
     assert falling[-1][0] - falling[0][0] == pytest.approx(0.060, abs=0.003)
     assert history[-1][0] - falling[-1][0] < 1e-3
     slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(falling)]
-    assert slopes == pytest.approx([-box.plateau / 0.060] * len(slopes), rel=1e-6)
+    assert slopes == pytest.approx([-box.machine.peak / 0.060] * len(slopes), rel=1e-6)
 
 
 @pytest.mark.parametrize("elevation", [0.0, 40.0])
@@ -176,17 +176,17 @@ def test_the_push_begins_to_fall_where_what_is_left_is_the_way_of_its_fall(eleva
         level_pitch = (0.0, radians(elevation), 0.0)
         at(box, RELEASE + 0.5, 10.0 - before, speed, attitude=level_pitch)
         at(box, RELEASE + 0.5 + fall / 2.0, 10.0 - before + 0.1, speed, attitude=level_pitch)
-        assert box.push == pytest.approx(box.plateau * (0.5 if falls else 1.0), rel=1e-4)
+        assert box.push == pytest.approx(box.machine.peak * (0.5 if falls else 1.0), rel=1e-4)
 
 
 def test_a_stroke_without_room_for_its_rise_still_ends() -> None:
     """15 g over 0.6 m: the push begins to fall as soon as it has risen."""
     box = rail(stroke=0.6, peak_specific_force_g=15.0)
     at(box, RELEASE + 0.020, 0.50, 18.0)
-    assert box.push == pytest.approx(2.0 / 3.0 * box.plateau)
+    assert box.push == pytest.approx(2.0 / 3.0 * box.machine.peak)
     at(box, RELEASE + 0.031, 0.55, 18.0)
     at(box, RELEASE + 0.061, 0.58, 18.0)
-    assert box.push == pytest.approx(0.5 * box.plateau, rel=1e-3)
+    assert box.push == pytest.approx(0.5 * box.machine.peak, rel=1e-3)
 
 
 # -- friction --------------------------------------------------------------------------------------------------------
@@ -242,7 +242,7 @@ def test_the_push_of_a_step_is_its_mean(since: float) -> None:
     at(box, RELEASE + 1e-3 * (since + 0.5), 0.1)
     t = 1e-3 * np.linspace(since, since + 1.0, 10_001)
     mean = 1e3 * np.trapezoid(np.clip(t / 0.030, 0.0, 1.0), t)
-    assert box.push == pytest.approx(box.plateau * mean, abs=1e-7 * box.plateau)
+    assert box.push == pytest.approx(box.machine.peak * mean, abs=1e-7 * box.machine.peak)
 
 
 @pytest.mark.parametrize("begins", [0.1, 0.5, 0.9])
@@ -258,9 +258,9 @@ def test_the_push_begins_to_fall_within_a_step(begins: float) -> None:
     late = (0.5 - begins) * step  # of the step's middle, behind the corner
     middle = there + speed * late + 0.5 * pushed * late**2
     at(box, RELEASE + 0.5, middle, speed + pushed * late)
-    assert box.push == pytest.approx(box.plateau * (1.0 - (1.0 - begins) ** 2 * step / (2.0 * fall)), rel=3e-5)
+    assert box.push == pytest.approx(box.machine.peak * (1.0 - (1.0 - begins) ** 2 * step / (2.0 * fall)), rel=3e-5)
     at(box, RELEASE + 0.5 + step, middle + step * speed, speed)
-    assert box.push == pytest.approx(box.plateau * (1.0 - (1.5 - begins) * step / fall), rel=6e-5)
+    assert box.push == pytest.approx(box.machine.peak * (1.0 - (1.5 - begins) * step / fall), rel=6e-5)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.8, 1.0])
@@ -293,11 +293,11 @@ def test_the_push_ends_with_the_rail() -> None:
     """Whatever of it is left there: of the last step it has the share before the end."""
     box = rail(step=4e-3, friction=0.0)
     at(box, RELEASE + 0.1, 1.0, 10.0)
-    assert box.push == pytest.approx(box.plateau)
+    assert box.push == pytest.approx(box.machine.peak)
     at(box, RELEASE + 0.2, SETTINGS.stroke - 0.25 * 0.04, 10.0)  # three quarters of 40 mm are left
     t = np.linspace(0.0, 3e-3, 1001)
     mean = np.trapezoid(1.0 - t / 0.060, t) / 4e-3
-    assert box.push == pytest.approx(box.plateau * mean, rel=1e-6)
+    assert box.push == pytest.approx(box.machine.peak * mean, rel=1e-6)
 
 
 def test_angles_turn_as_a_body_does() -> None:

@@ -88,9 +88,9 @@ def test_ballast_is_the_statics_of_two_masses() -> None:
 def test_the_catapult_is_set_for_the_aircraft_as_it_should_be() -> None:
     """The same force on more mass: the specific force falls by the factor."""
     heavier = plant("aircraft.mass_factor=1.1")
-    assert heavier.rail.plateau == pytest.approx(as_it_is().rail.plateau, rel=EXACT)
+    assert heavier.rail.machine.peak == pytest.approx(as_it_is().rail.machine.peak, rel=EXACT)
     stronger = plant("launcher.force_factor=1.07")
-    assert stronger.rail.plateau == pytest.approx(1.07 * as_it_is().rail.plateau, rel=EXACT)
+    assert stronger.rail.machine.peak == pytest.approx(1.07 * as_it_is().rail.machine.peak, rel=EXACT)
 
 
 def fw8() -> jsbsim.FGFDMExec:

@@ -117,7 +117,7 @@ def test_errors_are_binned_from_the_true_launch(alone: Batch) -> None:
 def test_a_flight_that_is_not_launched_has_no_trace() -> None:
     stuck = load_scenario("catapult", overrides=["duration=5", "launcher.peak_specific_force_g=0.1"])
     flown = fly_seeds(stuck, [1], workers=1)
-    assert flown.runs["outcome"].tolist() == ["missed_launch"]
+    assert flown.runs["outcome"].tolist() == ["timeout"]
     assert flown.traces[0].filtered.size == 0
     assert flown.error_time.size == 0
 

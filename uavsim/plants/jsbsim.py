@@ -354,7 +354,14 @@ class JsbsimPlant:
             release_time=s.release_time,
             step=self.dt,
             force_factor=s.force_factor,
+            pressure=self._value("atmosphere/P-psf") * PSF,
         )
+
+    @property
+    def shakes(self) -> tuple[float, float]:
+        """Specific force, m/s², that the push comes to, and in which time, s: what makes the airframe ring."""
+        machine = self.rail.machine
+        return machine.peak / (self.row[INDEX["mass"]] * SLUG), machine.rise
 
     def _settle(self) -> None:
         if self._moving.active:

@@ -2,17 +2,12 @@
 
 Each shoe is a linear spring-damper normal and lateral to the rail (it runs in a slot, so both signs act); roll is
 held by the shoes' width. Along the rail the latch, a spring-damper too, carries m g sin(theta) until release; from
-then on only a stop behind the shoes is left, which pushes but does not pull. The push is
+then on only a stop behind the shoes is left, which pushes but does not pull. What pushes is in `launchers`. The front
+shoe leaves first; for the time that the rear one still holds, gravity turns the nose down (tip-off).
 
-    F(t) = m g0 n(t),   n rises linearly to its plateau, stays, and falls linearly to 0 at the end of the stroke,
-
-where the fall begins at the first moment at which the remaining way is no longer than what the aircraft will run
-while the push dies away: v t_fall + (n g0 / 3 - g sin(theta) / 2) t_fall^2. The front shoe leaves first; for the time
-that the rear one still holds, gravity turns the nose down (tip-off).
-
-What is given is the mean over a step, so that its impulse is right whatever the step: the push is integrated in closed
-form with its fall beginning where it does, within a step; a shoe that leaves within one counts for the share of it
-during which it holds; springs are taken with the motion of the step's middle. At 26 m/s a step of 1 ms is 26 mm of way.
+What is given is the mean over a step, so that its impulse is right whatever the step: a shoe that leaves within one
+counts for the share of it during which it holds; springs are taken with the motion of the step's middle. At 26 m/s a
+step of 1 ms is 26 mm of way.
 
 Everything is SI; the rail's frame is (along, right, down), the body's (forward, right, down).
 """
@@ -20,8 +15,9 @@ Everything is SI; the rail's frame is (along, right, down), the body's (forward,
 from math import cos, pi, sin, tan
 from typing import NamedTuple
 
+from uavsim.plants.launchers.kinds import make_push
+from uavsim.plants.launchers.push import Load
 from uavsim.plants.settings import LauncherSettings
-from uavsim.truth import STANDARD_GRAVITY
 
 CONTACT_FREQUENCY = 40.0  # Hz, of the aircraft's mass on both shoes: stiff, and stable at a step of 1 ms
 ROLL_FREQUENCY = 15.0  # Hz, of the aircraft held in roll by the shoes' width; its small inertia allows no more at 1 ms
@@ -90,13 +86,6 @@ def _seen(axis: Vector, axes: tuple[Vector, Vector, Vector], motion: Motion) -> 
     return _dot(x, axis), _dot(y, axis), _dot(z, axis), _dot(motion.displacement, axis), _dot(motion.velocity, axis)
 
 
-def _ramp(since: float, length: float) -> float:
-    """Integral of what rises evenly from 0 to 1 in `length` and then stays, s."""
-    if since <= 0.0:
-        return 0.0
-    return 0.5 * since * since / length if since < length else since - 0.5 * length
-
-
 def _share(left: float, way: float) -> float:
     """Share of a step on `way` for which a shoe holds that leaves after `left`."""
     return 0.0 if left <= 0.0 else 1.0 if left >= way else left / way
@@ -121,9 +110,13 @@ class Rail:
         Over which forces are averaged, s.
     force_factor
         This launch's push over the nominal one.
+    pressure
+        Of the air at the launcher, Pa.
 
     Attributes
     ----------
+    machine
+        What pushes.
     travel
         Way along the rail at the beginning of the step that was asked for last, m.
     push
@@ -144,6 +137,7 @@ class Rail:
         release_time: float,
         step: float,
         force_factor: float = 1.0,
+        pressure: float = 101_325.0,
     ) -> None:
         if front[0] <= rear[0]:
             raise ValueError("the front launch shoe must lie ahead of the rear one")
@@ -153,10 +147,9 @@ class Rail:
         self.along, self.right, self.down = body_axes(
             (0.0, settings.elevation_deg * pi / 180.0, settings.heading_deg * pi / 180.0)
         )
-        self.plateau = mass * STANDARD_GRAVITY * settings.peak_specific_force_g * force_factor  # N
         backward = -gravity * self.along[2]  # m/s^2, g sin(theta)
-        self._pushed = self.plateau / mass - backward  # m/s^2 along the rail on the plateau
-        self._run_out = (self.plateau / mass / 3.0 - backward / 2.0) * settings.fall**2  # m, at no speed
+        self.machine = make_push(settings, Load(mass, backward, settings.stroke, step, force_factor, pressure))
+        self._ends = settings.stroke if settings.ends_at is None else settings.ends_at
         self._rest = (front, rear)
         angular = 2.0 * pi * CONTACT_FREQUENCY
         self._stiffness, self._damping = mass * angular**2, 2.0 * DAMPING_RATIO * mass * angular
@@ -170,30 +163,18 @@ class Rail:
         self._front_rest = -weight_normal * (-rear[0]) / base
         self._rear_rest = -weight_normal * front[0] / base
         self._front_leaves = settings.stroke - base
-        self._fall_start: float | None = None
         self.travel = 0.0
         self.push = 0.0
         self.active = True
 
-    def _mean_push(self, start: float, speed: float, held: float) -> float:
-        """Mean force of the catapult over the step from `start`, s, of which it acts for the share `held`, N."""
-        s, step = self.settings, self._step
-        since = start - self.release_time
-        if since + step < ROUNDING:
+    def _mean_push(self, start: float, speed: float, held: float, against: float) -> float:
+        """Mean force of the launcher over the step from `start`, s, of which it acts for the share `held`, N."""
+        settings, step = self.settings, self._step
+        since = start - self.release_time - settings.hang_fire
+        if since + step < ROUNDING or settings.misfire:
             return 0.0
-        if self._fall_start is None:
-            left = s.stroke - self.travel - self._run_out - (speed - 0.5 * step * self._pushed) * s.fall
-            gained = step * (speed + self._pushed * s.fall)  # what of it is used up in this step
-            begins = max(since + step * left / gained if 0.0 < left < gained else since, s.rise)
-            if left < gained and begins < since + step:
-                self._fall_start = begins
-        return (self._impulse(since + held * step) - self._impulse(since)) / step
-
-    def _impulse(self, since: float) -> float:
-        """Integral of the push from release until `since` later, N s."""
-        s, fall = self.settings, self._fall_start
-        lost = 0.0 if fall is None else _ramp(since - fall, s.fall)
-        return self.plateau * (_ramp(since, s.rise) - lost)
+        held = min(held, _share(self._ends - self.travel, speed * step))
+        return self.machine.mean(since, self.travel, speed, held, against) if held > 0.0 else 0.0
 
     def forces(self, time: float, motion: Motion, shoes: tuple[Vector, Vector]) -> RailForces:
         """Mean forces on the aircraft over the step whose middle is `time`, s.
@@ -239,9 +220,9 @@ class Rail:
         support = self._axial_rest - self._stiffness * middle - self._damping * speed
         if time > self.release_time:
             support = max(support, 0.0)
-        self.push = self._mean_push(time - 0.5 * self._step, speed, held[1])
         rubbing = self.settings.friction * (abs(normal_loads[0]) + abs(normal_loads[1]))
         friction = -rubbing * max(-1.0, min(1.0, speed / CREEP_SPEED)) if time > self.release_time else 0.0
+        self.push = self._mean_push(time - 0.5 * self._step, speed, held[1], -friction)
         rolling = self._roll_stiffness * _dot(axes[1], down) + self._roll_damping * motion.rates[0]
         return RailForces(
             axial=self.push + support + friction,

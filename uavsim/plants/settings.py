@@ -1,11 +1,12 @@
 """What a JSBSim flight is told before it starts: aircraft and launcher. Free of jsbsim, so scenarios load fast."""
 
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Interval
 
 from uavsim.plants.air.settings import EnvironmentSettings
+from uavsim.plants.launchers.settings import BungeeSettings, ElectromechanicalSettings, PneumaticSettings
 
 __all__ = ["AircraftSettings", "EnvironmentSettings", "LauncherSettings"]
 
@@ -52,6 +53,9 @@ class LauncherSettings:
 
     Attributes
     ----------
+    kind
+        What pushes: "ideal", a specific force that is the same for any mass, "pneumatic", "bungee" or
+        "electromechanical". The latter have groups of their own; peak_specific_force_g, rise and fall are the ideal's.
     peak_specific_force_g
         Specific force along body x that the push gives on its plateau, standard g. The acceleration along the rail
         is that less g sin(elevation), friction and drag.
@@ -69,6 +73,14 @@ class LauncherSettings:
         Of the aircraft's centre of gravity above the ground before release, m.
     friction
         Coulomb coefficient between shoes and rail.
+    hang_fire
+        How long after the latch the push begins, s.
+    ends_at
+        Way along the rail at which the push fails, m; the aircraft runs on as it is.
+    misfire
+        Whether the push never comes.
+    pneumatic, bungee, electromechanical
+        The machines.
     force_factor
         Factor on the force of the push, beside the one that is drawn.
     force_spread
@@ -79,6 +91,7 @@ class LauncherSettings:
         Greatest waiting time, s.
     """
 
+    kind: Literal["ideal", "pneumatic", "bungee", "electromechanical"] = "ideal"
     peak_specific_force_g: Annotated[float, Interval(ge=0.1, le=40)] = 8.0
     rise: Annotated[float, Interval(ge=0.001, le=1)] = 0.030
     fall: Annotated[float, Interval(ge=0.001, le=1)] = 0.060
@@ -87,6 +100,12 @@ class LauncherSettings:
     heading_deg: Annotated[float, Interval(ge=-360, le=360)] = 0.0
     height: Annotated[float, Interval(ge=0.3, le=100)] = 1.5
     friction: Annotated[float, Interval(ge=0, le=0.5)] = 0.01
+    hang_fire: Annotated[float, Interval(ge=0, le=60)] = 0.0
+    ends_at: Annotated[float, Interval(gt=0, le=50)] | None = None
+    misfire: bool = False
+    pneumatic: PneumaticSettings = field(default_factory=PneumaticSettings)
+    bungee: BungeeSettings = field(default_factory=BungeeSettings)
+    electromechanical: ElectromechanicalSettings = field(default_factory=ElectromechanicalSettings)
     force_factor: Annotated[float, Interval(gt=0, le=3)] = 1.0
     force_spread: Annotated[float, Interval(ge=0, le=0.3)] = 0.02
     wait_min: Annotated[float, Ge(1.6)] = 2.0

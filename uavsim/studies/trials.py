@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sensors import Accelerometer, Streams, Vibration
-from uavsim.cosim import draw, make_plant
+from uavsim.cosim import draw, make_plant, shaken
 from uavsim.dispersions import resolved
 from uavsim.judged import Judged
 from uavsim.onboard.flight_computer import FlightComputerSettings
@@ -36,7 +36,6 @@ from uavsim.scenario import Scenario
 from uavsim.studies.detections import BatchDetector
 from uavsim.studies.signals import LaunchSettings, LaunchTruth, record_launches
 from uavsim.studies.wing_commands import commands
-from uavsim.truth import STANDARD_GRAVITY as G0
 
 Array = NDArray[np.float64]
 
@@ -152,6 +151,7 @@ class _Flight:
     release: float
     exit: float
     push: float  # m/s²
+    rise: float  # s, of it
     truth: LaunchTruth
 
 
@@ -186,11 +186,10 @@ def _fly(scenario: Scenario) -> _Flight:
     axial = force[:, "xyz".index(axis[1])] * (-1.0 if axis[0] == "-" else 1.0)
     end = min(exit_time, float(judged.time[-1]))
     first = max(0, round((drawn.release_time - WAIT[0]) * scenario.plant.step_rate))
-    nominal = scenario.launcher.peak_specific_force_g * G0 * drawn.force_factor
-    push = nominal if scenario.plant.chosen.rings else 0.0
+    push, rise = shaken(scenario, drawn, plant)
     truth = LaunchTruth(onset, judged.crossing_time, float(axial.max()), end)
     rows: tuple[tuple[float, float, float], ...] = tuple(map(tuple, force[first:].tolist()))
-    return _Flight(scenario, rows, first, drawn.release_time, exit_time, push, truth)
+    return _Flight(scenario, rows, first, drawn.release_time, exit_time, push, rise, truth)
 
 
 def uncommanded(scenario: Scenario, index: int = 0) -> tuple[Array, float, float]:
@@ -222,7 +221,7 @@ def _feel(flight: _Flight, streams: Streams) -> tuple[Array, float, float, Launc
         dt=dt,
         release_time=flight.release - begin,
         plateau=flight.push,
-        rise=scenario.launcher.rise,
+        rise=flight.rise,
         scale=settings.vibration_scale,
     )
     part = Accelerometer.from_settings(settings, streams, dt=dt)

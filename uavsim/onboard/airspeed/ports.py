@@ -117,7 +117,6 @@ class Ports:
         if noise.differential:
             variance, row_variance = variance + SMOOTHED * self._static_variance, variance + self._static_variance
         self.total = TotalWatch(self._aided, variance, noise.walk, *total, offset, white, row_variance)
-        gusts = self._aided.gust_sd > self._aided.gust_floor
         self.static = StaticWatch(self._static_variance, noise.walk, *static, lift_offset)
         self._lift, self.misses, self.gated, self.torn, self.between = GRAVITY, 0, 0, False, 0.0
         self.raw_static = nan
