@@ -33,12 +33,12 @@ ON_GROUND = (TOUCHED, "crashed", "landed")  # how a flight ended that touched it
 
 def outcome(flight: Judged) -> str:
     """Name the first that applies, in the order of `docs/score.md`."""
-    wings, exit_time, detected = flight.event_time("wings_commanded"), flight.rail_exit_time, flight.detected_time
+    (_, acted), exit_time, detected = _acts(flight), flight.rail_exit_time, flight.detected_time
     if flight.ended in ("diverged", FAILED):
         return flight.ended
     if flight.is_rig:
         return "completed"
-    if wings is not None and (exit_time is None or wings < exit_time):
+    if acted is not None and (exit_time is None or acted < exit_time):
         return "false_launch"
     limit = np.inf if exit_time is None else exit_time + MISSED_AFTER
     if flight.true_time is not None if detected is None else detected > limit:  # without a push there is none to miss
@@ -196,10 +196,17 @@ def _place(flight: Judged) -> str:
 # -- the launch and its end ------------------------------------------------------------------------------------------
 
 
+def _acts(flight: Judged) -> tuple[str, float | None]:
+    """What must not happen on the rail, and when it does: the wings' command, of a fixed wing the motor's."""
+    if flight.is_fixed_wing:
+        return "motor running", flight.event_time("motor_on")
+    return "wings commanded", flight.event_time("wings_commanded")
+
+
 def _too_soon(flight: Judged) -> str:
-    wings, exit_time = flight.event_time("wings_commanded"), flight.rail_exit_time
+    (what, when), exit_time = _acts(flight), flight.rail_exit_time
     left = "never leaves the rail" if exit_time is None else f"leaves the rail at {exit_time:.3f} s"
-    return f"wings commanded on the rail: at {wings:.3f} s, the last shoe {left}"
+    return f"{what} on the rail: at {when:.3f} s, the last shoe {left}"
 
 
 def _missed(flight: Judged) -> str:

@@ -4,8 +4,8 @@ All times come from the plant's truth and never from what was detected:
 
 * true launch: the first truth row at which the aircraft has moved more than 1 mm along the rail after release and does
   not come back; crossing: the first true f_x above 4.5 g;
-* stroke: 50 ms after the true launch … rail exit; transition: … wing out + 2 s (rail exit + 4 s without a wing);
-  cruise: the rest.
+* stroke: 50 ms after the true launch … rail exit; transition: … wing out + 2 s (rail exit + 4 s if the wing never comes
+  out, + 2 s of a fixed wing, whose truth is 1 throughout); cruise: the rest.
 
 A rig has neither rail nor wing: it has one phase, its whole run, and its crossing is that of the true specific force
 along the detector's axis.
@@ -119,13 +119,23 @@ class Judged:
         return self._first(self.truth("rail_s") >= self.scenario.launcher.stroke, self.release_time)
 
     @cached_property
+    def is_fixed_wing(self) -> bool:
+        """Whether the wing is out from the first row on: there is none to unfold."""
+        wing = self.truth("wing")
+        return bool(wing.size) and bool(wing[0] >= WING_OUT)
+
+    @cached_property
     def wing_start_time(self) -> float | None:
-        """When the wing begins to open, s."""
+        """When the wing begins to open, s; never of a fixed one."""
+        if self.is_fixed_wing:
+            return None
         return self._first(self.truth("wing") > 0.0, -np.inf)
 
     @cached_property
     def wing_out_time(self) -> float | None:
-        """When the wing is out, s."""
+        """When the wing is out, s; a fixed one never comes out."""
+        if self.is_fixed_wing:
+            return None
         return self._first(self.truth("wing") >= WING_OUT, -np.inf)
 
     def _first(self, condition: NDArray[np.bool_], after: float) -> float | None:
@@ -157,7 +167,7 @@ class Judged:
         start, exit_time = true + STROKE_LEAD, self.rail_exit_time
         if exit_time is None:
             return {"stroke": (start, end)}
-        wing = self.wing_out_time
+        wing = exit_time if self.is_fixed_wing else self.wing_out_time
         cruise = exit_time + TRANSITION_FOLDED if wing is None else max(wing + TRANSITION, exit_time)
         edges = {"stroke": (start, exit_time), "transition": (exit_time, min(cruise, end))}
         if cruise < end:

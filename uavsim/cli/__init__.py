@@ -12,6 +12,7 @@ from uavsim.cli.bench import bench
 from uavsim.cli.campaign import campaign
 from uavsim.cli.common import DONE, INTERRUPTED, WRONG_INPUT, Interrupted, WrongInputError, told
 from uavsim.cli.fly import fly
+from uavsim.cli.linearise import linearise
 from uavsim.cli.paper import paper
 from uavsim.cli.plugins import plugins
 from uavsim.cli.printed import alone
@@ -31,7 +32,7 @@ from uavsim.views.text import message
 
 COMMANDS = (
     *(scenarios, fly, campaign, sweep, sensitivity, verify, rare, replay, sensors),
-    *(roc, tune, survey, paper, plugins, bench),
+    *(roc, tune, survey, linearise, paper, plugins, bench),
 )
 """In the order of the help."""
 
@@ -79,6 +80,7 @@ def uavsim(
       uavsim roc --detectors adaptive-cusum,multi-level-window,px4
       uavsim tune catapult --false-alarms 0.1
       uavsim survey fw8
+      uavsim linearise fw8
       uavsim paper
       uavsim plugins
       uavsim bench

@@ -48,7 +48,6 @@ from uavsim.plants.columns import (
     FT,
     INCH,
     INDEX,
-    LBF,
     MOTION,
     OF_RECORD,
     OF_ROW,
@@ -63,6 +62,17 @@ from uavsim.plants.columns import (
     WING,
 )
 from uavsim.plants.hangar import find_airframe, is_packaged
+from uavsim.plants.interface import (
+    COMMANDS,
+    FORCES,
+    PARTS,
+    SHOES,
+    TURNS,
+    WING_POSITION,
+    Interface,
+    interface_of,
+    problems,
+)
 from uavsim.plants.plant import Commands, Run
 from uavsim.plants.rail import Motion, Rail, RailForces, Vector, body_axes, turned
 from uavsim.plants.settings import AircraftSettings
@@ -74,7 +84,6 @@ WING_OUT = 0.99
 DRIED = 0.02  # share of the vapour that may be lost before it is refused: two laws of saturation differ by 0.6 %
 
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
-_TURN = ("air/p-rad_sec", "air/q-rad_sec", "air/r-rad_sec")  # of the air, which an aircraft's damping may read
 POINT_MASS = "inertia/pointmass-weight-lbs"  # and the number of it
 INCHES = 12.0  # in a foot
 STILL = 1e-4  # in/s of airspeed, below which its quotient with the Mach number is not taken for the speed of sound
@@ -85,7 +94,7 @@ RATES_BY = ("simulation/integrator/rate/rotational", "simulation/integrator/rate
 MEAN_OF_STEP = 1.0  # rectangular: an acceleration acts for the step after it, so the rail gives the mean over that
 TWO_STEPS = 3.0  # Adams-Bashforth of second order, in flight; the rectangular loses 2 % of a roll while the wings open
 
-_COMMANDS = ("fcs/wing-cmd-norm", "fcs/throttle-cmd-norm", "ap/pitch-cmd-rad", "ap/roll-cmd-rad", "ap/engaged")
+_UNHEARD = "uavsim/unheard/"  # where the properties stand of a part that the aircraft goes without
 GET = FGPropertyNode.get_double_value
 Row = tuple[float, ...]
 Array = NDArray[np.float64]
@@ -136,29 +145,17 @@ class JsbsimPlant:
         self.k = 0
         self.t = 0.0
         self._fdm = self._load(settings.aircraft)
-        self._catalogue = _read_catalogue(self._fdm)
+        self._catalogue = read_catalogue(self._fdm)
+        self._interface = self._checked_interface()
         self._place()
         self._run: Callable[[], bool] = self._fdm.run
         self._nodes = [self._node(name) for name, _ in RAW.values()]
-        self._commands = [self._node(name) for name in _COMMANDS]
+        self._commands = [self._node(name) for name in COMMANDS]
         self._eye = self._place_of(settings.accelerometer_position)
         self._head = self._place_of(settings.head_position)
         self._contacts = [self._node(name) for name in self._catalogue if CONTACT.fullmatch(name)]
-        self._forces = [
-            (self._node(f"external_reactions/{name}"), unit)
-            for name, unit in (
-                ("push/magnitude", LBF),
-                ("front-shoe-normal/magnitude", -LBF),  # its direction is up, the rail's normal is down
-                ("front-shoe-lateral/magnitude", LBF),
-                ("rear-shoe-normal/magnitude", -LBF),
-                ("rear-shoe-lateral/magnitude", LBF),
-                ("rail-roll/magnitude-lbsft", LBF * FT),
-            )
-        ]
-        self._shoes = tuple(
-            tuple(self._value(f"external_reactions/{end}-shoe-normal/location-{axis}-in") for axis in "xyz")
-            for end in ("front", "rear")
-        )
+        self._forces = [(self._node(name), unit) for name, unit in FORCES]
+        self._shoes = tuple(tuple(map(self._value, places)) for places in SHOES)
         self.row: Row = self._read()
         self._gravity = self._value("accelerations/gravity-ft_sec2") * FT
         self.rail = self._rail()
@@ -174,10 +171,9 @@ class JsbsimPlant:
         )
         self._moving.tell("time", 0.0)
         self._moving.tell("release", settings.release_time)
-        self._turns = all(name in self._catalogue for name in _TURN)
-        names = (*_WIND, *_TURN) if self._turns else _WIND
+        names = (*_WIND, *TURNS) if self._interface.turns else _WIND
         told: list[Callable[[float], object]] = [self._node(name).set_double_value for name in names]
-        self._air_to = told + [float] * (len(_WIND) + len(_TURN) - len(told))  # an aircraft without turns is told none
+        self._air_to = told + [float] * (len(_WIND) + len(TURNS) - len(told))  # an aircraft without turns is told none
         self._blown: Iterator[tuple[float, ...]] | None = None
         self._attended = True
         self._left: int | None = None  # step at which it has left the rail
@@ -205,15 +201,21 @@ class JsbsimPlant:
             fdm.set_property_value(name, MEAN_OF_STEP)
         return fdm
 
+    def _checked_interface(self) -> Interface:
+        """Tell which parts it has, and let what it goes without stand where nothing hears it, with the wing out."""
+        if found := problems(self._catalogue, self._functions):
+            raise ValueError(f"aircraft.model: {self.settings.aircraft.model}: {'; '.join(found)}")
+        interface = interface_of(self._catalogue)
+        for name in interface.absent:
+            self._fdm.set_property_value(_UNHEARD + name, 1.0 if name == WING_POSITION else 0.0)
+        return interface
+
     def _node(self, name: str) -> FGPropertyNode:
-        if name not in self._catalogue:
+        if name in self._interface.absent:
+            name = _UNHEARD + name
+        elif name not in self._catalogue:
             raise ValueError(
                 f"aircraft.model: {self.settings.aircraft.model!r} lacks the property {name!r} that uavsim needs"
-            )
-        if name in self._functions:  # what fails in one that is read from Python ends the process
-            raise ValueError(
-                f"aircraft.model: {self.settings.aircraft.model}: {name!r} is a function, and uavsim reads or sets it: "
-                "make it the output of a component"
             )
         node = self._fdm.get_property_manager().get_node(name)
         assert node is not None, name  # it is in the catalogue
@@ -450,7 +452,7 @@ class JsbsimPlant:
             self._hold(self.t)
         elif self._left is not None:
             self._fly_free(self._left)
-        if moving.gusts.awaited and self.row[WING] >= WING_OUT:
+        if moving.gusts.awaited and self.row[WING] >= WING_OUT and (self._interface.folds or not self.on_rail):
             moving.tell("wing-out", self.t)
         if moving.active and self._blown is None:
             self._blown = self._motion_from(self.t)
@@ -675,10 +677,15 @@ class JsbsimPlant:
     def remarks(self) -> list[str]:
         """What deserves a word: a line each, more of them at the end than at the start."""
         said = list(self._doubts)
-        if self.settings.environment.turbulence_wind_20ft > 0.0 and not self._turns:
+        if self.settings.environment.turbulence_wind_20ft > 0.0 and not self._interface.turns:
             said.append(
                 f"{self.settings.aircraft.model} flies without the turbulence's rotation (p, q, r): it has no "
-                f"{', '.join(_TURN)} that its damping reads"
+                f"{', '.join(TURNS)} that its damping reads"
+            )
+        if not self._interface.stabilised:
+            said.append(
+                f"{self.settings.aircraft.model} flies without a stabiliser: it has no "
+                f"{', '.join(PARTS['stabiliser'])}, so the commands of pitch and roll reach nothing"
             )
         return said + (self._moving.gusts.missed(self.t) if self.k else [])
 
@@ -766,7 +773,7 @@ def _derivatives(now: float, before: float, two_before: float, three_before: flo
     return first, second
 
 
-def _read_catalogue(fdm: FGFDMExec) -> dict[str, str]:
+def read_catalogue(fdm: FGFDMExec) -> dict[str, str]:
     """Property names with their access: 'R', 'W' or 'RW'."""
     entries = fdm.get_property_catalog()
     lines = entries if isinstance(entries, list) else str(entries).splitlines()

@@ -250,7 +250,8 @@ def hold(flight: Flight) -> Held:
     found = replayed(flight)
     speed = true_airspeed(flight, found[:, 0])
     rows = np.column_stack([found[:, 0] - true, found[:, 1] - speed, found[:, 2], found[:, 3] - speed])
-    out, off = end["wing_out_time"] - true, end["rail_exit_time"] - true
+    off = end["rail_exit_time"] - true
+    out = off if end["wing_out_time"] is None else end["wing_out_time"] - true  # a fixed wing is out all along
     edges = {
         "launch": (0.0, LAUNCH),
         "detected": (launch["latency"], LAUNCH),
