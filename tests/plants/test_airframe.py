@@ -168,7 +168,7 @@ def test_aircraft_of_jsbsim_pass_once_mended(name: str, tmp_path: Path) -> None:
     ("name", "why"),
     [
         ("c172x", "c172x.xml: line 1222: <output>: is not part of an aircraft"),
-        ("f16", "'sim/model/pushback/position-norm' is a property that neither JSBSim"),
+        ("f16", "'sim/model/pushback/kd' are properties that neither JSBSim"),
     ],
 )
 def test_aircraft_of_jsbsim_as_they_are(name: str, why: str, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ import uavsim
 from uavsim.criteria import outcome, reason
 from uavsim.flight import Flight
 from uavsim.judged import STROKE_LEAD, TRANSITION, Judged
+from uavsim.plants.hangar import find_airframe
 from uavsim.plants.interface import NEEDED, PARTS, interface_of, problems
 from uavsim.scenario import load_scenario
 
@@ -63,15 +64,11 @@ def test_an_aircraft_without_anything_is_told_in_one_line(tmp_path: Path) -> Non
     for part in (b"external_reactions", b"propulsion"):
         start, end = main.index(b"<" + part + b">"), main.index(b"</" + part + b">")
         main = main[:start] + main[end + len(part) + 3 :]
-    declared = b"".join(
-        b'<property value="0">' + name + b"</property>"
-        for name in (b"propulsion/engine/thrust-lbs", b"external_reactions/wing-inertia/l")
-    )
-    main = main.replace(b"</fdm_config>", b'<system name="more">' + declared + b"</system></fdm_config>")
     folder = hostile.write(good | {"fw8.xml": main}, tmp_path / "fw8")
     with pytest.raises(ValueError, match=r"it lacks the properties") as caught:
         uavsim.fly("catapult", overrides=[f"aircraft.model={folder}"])
     (line,) = str(caught.value).splitlines()
+    assert "'fcs/throttle-cmd-norm'" in line
     assert "'external_reactions/push/magnitude'" in line
     assert "'external_reactions/rail-roll/magnitude-lbsft'" in line
 
@@ -117,3 +114,17 @@ def test_a_motor_on_the_rail_is_a_false_launch_of_a_fixed_wing() -> None:
     assert str(reason(judged, "false_launch")).startswith("motor running on the rail: at 1.100 s")
     folds = flight.truth.assign(wing=np.where(flight.truth["t"] < 4.0, 0.0, 1.0))
     assert not replace(judged, tables={**judged.tables, "truth": folds}).is_fixed_wing
+
+
+def test_impossible_masses_and_missing_files_are_named_at_once(tmp_path: Path) -> None:
+    good = hostile.packaged()
+    main = good["fw8.xml"].replace(b'<emptywt unit="KG">6.96', b'<emptywt unit="KG">-6.96')
+    main = main.replace(b'<wingspan unit="M">1.8', b'<wingspan unit="M">0').replace(b">0.02112331<", b">0<")
+    folder = hostile.write(good | {"fw8.xml": main}, tmp_path / "fw8")
+    with pytest.raises(ValueError, match=r"<wingspan>: is 0 m.*<emptywt>: is -6.96 kg.*<ixx>: is 0 kg m²"):
+        find_airframe(str(folder))
+    for name in ("wing", "stabiliser"):
+        (folder / "systems" / f"{name}.xml").unlink()
+    (folder / "fw8.xml").write_bytes(good["fw8.xml"])
+    with pytest.raises(ValueError, match=r"'wing\.xml' is not in .*'stabiliser\.xml' is not in"):
+        find_airframe(str(folder))

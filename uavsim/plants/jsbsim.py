@@ -709,7 +709,7 @@ def load_airframe(airframe: Airframe) -> FGFDMExec:
     Raises
     ------
     ValueError
-        One line: what JSBSim says of it, or which property it reads that nobody has.
+        One line: what JSBSim says of it, or which properties it reads that nobody has.
     """
     if is_packaged(airframe):
         return _opened(airframe, Path(airframe))
@@ -741,9 +741,12 @@ def _opened(airframe: Airframe, folder: Path) -> FGFDMExec:
     missing = [name for name in airframe.checked.reads if not manager.hasNode(name)]
     if missing:
         _leave_up(fdm)
+        named = "; ".join(f"{airframe.checked.reads[name]}: {name!r}" for name in missing)
+        are = "is a property" if len(missing) == 1 else "are properties"
+        more = "".join(f"; {clause}" for clause in problems(read_catalogue(fdm), airframe.checked.functions))
         raise ValueError(
-            f"aircraft.model: {airframe}: {airframe.checked.reads[missing[0]]}: {missing[0]!r} is a property that "
-            'neither JSBSim nor the aircraft has; declare it as <property value="0">'
+            f"aircraft.model: {airframe}: {named} {are} that neither JSBSim nor the aircraft has; declare "
+            f'{"it" if len(missing) == 1 else "them"} as <property value="0">{more}'
         )
     return fdm
 

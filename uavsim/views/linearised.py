@@ -10,7 +10,7 @@ import numpy as np
 
 from uavsim.files import whole, write_json
 from uavsim.studies.linearise import Linearised, Point, describe
-from uavsim.views.figure import BLACK, BLUE, DARK, GREY, RED, SMALL, label, sheet
+from uavsim.views.figure import BLACK, BLUE, DARK, GREY, RED, label, legend, sheet
 from uavsim.views.figure import save as save_figure
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def _draw(found: Linearised) -> Any:
         for wing, colour in zip(sorted({p.wing for p in found.points}), _colours(found), strict=True):
             _curve(place, [p for p in found.points if p.wing == wing and not p.problem], what, colour)
         label(place, unit, "airspeed, m/s" if place in axes[1] else None)
-    axes[0][0].legend(fontsize=SMALL, frameon=False)
+    legend(axes[0][-1], axes[0][0])
     return figure
 
 

@@ -99,7 +99,7 @@ def check_files(name: str, read: Reader) -> Checked:
             delays += sum(_delay(element) for element in root.all() if element.tag == "delay")
             if delays > MOST_DELAY:
                 raise ValueError(f"delays of {delays:.4g} s in all; up to {MOST_DELAY:g} are allowed")
-            waiting += [(_place(element, read), _ROOTS[element.tag]) for element in root.all() if _names(element)]
+            waiting += _named(root, read)
     with in_file(f"{name}.xml"):
         calls.check()
     return Checked(files, reads, frozenset(early), calls.names)
@@ -114,8 +114,7 @@ def _checked(content: bytes, roots: frozenset[str], *, is_named: bool) -> tuple[
         if (propulsion := root.find("propulsion")) is not None:
             check_feeds(propulsion)
         figures.check_places(root)
-        figures.check_metrics(_only(root, "metrics"))
-        figures.check_mass(_only(root, "mass_balance"))
+        figures.check_body(_only(root, "metrics"), _only(root, "mass_balance"))
     return root, reads
 
 
@@ -142,15 +141,21 @@ def _names(element: Element) -> bool:
     return "file" in element.attributes
 
 
-def _place(element: Element, read: Reader) -> str:
-    """Return the file that an element names, where JSBSim finds it first."""
-    stem = element.attributes["file"].strip()
-    stem = stem if stem.endswith(".xml") else f"{stem}.xml"
-    for place in _PLACES[element.tag]:
-        if read(place + stem) is not None:
-            return place + stem
-    searched = " or ".join(place for place in _PLACES[element.tag] if place)
-    raise ValueError(
-        f"line {element.line}: <{element.tag}>: the file {stem[:80]!r} is not in the aircraft's folder: copy it into "
-        f"{searched} there"
-    )
+def _named(root: Element, read: Reader) -> list[tuple[str, frozenset[str]]]:
+    """The files that a file names, and what each must hold; those that are not there are named in one line."""
+    found, missing = [], []
+    for element in filter(_names, root.all()):
+        stem = element.attributes["file"].strip()
+        stem = stem if stem.endswith(".xml") else f"{stem}.xml"
+        place = next((place for place in _PLACES[element.tag] if read(place + stem) is not None), None)
+        if place is not None:
+            found.append((place + stem, _ROOTS[element.tag]))
+            continue
+        searched = " or ".join(place for place in _PLACES[element.tag] if place)
+        missing.append(
+            f"line {element.line}: <{element.tag}>: the file {stem[:80]!r} is not in the aircraft's folder: copy it "
+            f"into {searched} there"
+        )
+    if missing:
+        raise ValueError("; ".join(missing))
+    return found

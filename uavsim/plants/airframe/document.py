@@ -176,9 +176,9 @@ def _unknown(tag: str, parent: str, rule: Rule) -> str:
 
 def _check_needs(element: Element, rule: Rule) -> None:
     tags = [child.tag for child in element.children]
-    for tag in rule.needs:
-        if tags.count(tag) != 1:
-            raise MarkupError(f"<{element.tag}>: needs <{tag}>, once; it has {tags.count(tag)}", element.line)
+    if wrong := [tag for tag in rule.needs if tags.count(tag) != 1]:
+        counted = "; ".join(f"needs <{tag}>, once; it has {tags.count(tag)}" for tag in wrong)
+        raise MarkupError(f"<{element.tag}>: {counted}", element.line)
     for tag in rule.some:
         if tag not in tags:
             raise MarkupError(f"<{element.tag}>: needs <{tag}>", element.line)

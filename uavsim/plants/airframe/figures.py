@@ -4,7 +4,7 @@ A rigid body has m > 0 and a positive definite tensor of inertia whose principal
 textbook of mechanics). The bounds hold whatever flies, from a palm-sized drone to the largest aeroplane.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -23,6 +23,7 @@ METRICS = {
     "chord": (LENGTH, 0.001, 100.0, "m"),
     "wingarea": (AREA, 1e-5, 1e4, "m²"),
 }
+TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 LIGHTEST, HEAVIEST = 1e-3, 1e6  # kg
 LEAST_INERTIA = 1e-9  # kg m²
 REACH = 100.0  # m, beyond which no part of an aircraft lies
@@ -38,30 +39,39 @@ def check_places(root: Element) -> None:
                 _bounded(axis, _si(Element(axis.tag, inches, axis.line, text=axis.text), LENGTH), -REACH, REACH, "m")
 
 
-def check_metrics(metrics: Element) -> None:
-    """Refuse sizes that cannot be."""
+def check_body(metrics: Element, balance: Element) -> None:
+    """Refuse sizes, masses and inertias that cannot be: all of them in one line, the first with its line."""
+    found: list[tuple[str, int]] = []
+    for element, value, least, greatest, unit in (*_sizes(metrics), *_masses(balance)):
+        if not least <= value <= greatest:
+            found.append((_out(element, value, least, greatest, unit), element.line))
+    if not found and (problem := of_inertia(*(_of(balance, tag) for tag in TENSOR))):
+        found.append((f"<mass_balance>: {problem}", balance.line))
+    if found:
+        first, *others = found
+        raise MarkupError("; ".join((first[0], *(f"line {line}: {said}" for said, line in others))), first[1])
+
+
+def _sizes(metrics: Element) -> Iterator[tuple[Element, float, float, float, str]]:
+    """Each size with its bounds and its unit."""
     for tag, (unit, least, greatest, shown) in METRICS.items():
         element = metrics.find(tag)
         assert element is not None  # the grammar needs it
-        _bounded(element, _si(element, unit), least, greatest, shown)
+        yield element, _si(element, unit), least, greatest, shown
 
 
-def check_mass(balance: Element) -> None:
-    """Refuse masses and inertias that no body has."""
+def _masses(balance: Element) -> Iterator[tuple[Element, float, float, float, str]]:
+    """Each mass and moment of inertia with its bounds and its unit."""
     empty = balance.find("emptywt")
     assert empty is not None
-    _bounded(empty, _si(empty, MASS), LIGHTEST, HEAVIEST, "kg")
+    yield empty, _si(empty, MASS), LIGHTEST, HEAVIEST, "kg"
     for point in balance.children:
         if point.tag == "pointmass" and (weight := point.find("weight")) is not None:
-            _bounded(weight, _si(weight, MASS), 0.0, HEAVIEST, "kg")
-    moments = {tag: _of(balance, tag) for tag in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")}
-    for tag in ("ixx", "iyy", "izz"):
+            yield weight, _si(weight, MASS), 0.0, HEAVIEST, "kg"
+    for tag in TENSOR[:3]:
         element = balance.find(tag)
         assert element is not None
-        _bounded(element, moments[tag], LEAST_INERTIA, HEAVIEST * REACH**2, "kg m²")
-    problem = of_inertia(*moments.values())
-    if problem:
-        raise MarkupError(f"<mass_balance>: {problem}", balance.line)
+        yield element, _si(element, INERTIA), LEAST_INERTIA, HEAVIEST * REACH**2, "kg m²"
 
 
 def of_inertia(ixx: float, iyy: float, izz: float, ixy: float, ixz: float, iyz: float) -> str:
@@ -93,6 +103,9 @@ def _si(element: Element, units: Mapping[str, float]) -> float:
 
 def _bounded(element: Element, value: float, least: float, greatest: float, unit: str) -> None:
     if not least <= value <= greatest:
-        raise MarkupError(
-            f"<{element.tag}>: is {value:.4g} {unit}; from {least:g} to {greatest:g} {unit} are allowed", element.line
-        )
+        raise MarkupError(_out(element, value, least, greatest, unit), element.line)
+
+
+def _out(element: Element, value: float, least: float, greatest: float, unit: str) -> str:
+    """Say that a figure is out of its bounds."""
+    return f"<{element.tag}>: is {value:.4g} {unit}; from {least:g} to {greatest:g} {unit} are allowed"
