@@ -398,7 +398,7 @@ def chosen(*values: Any) -> str:
     [
         ("catapult", of("launcher.fricton", NORMAL),
          "unknown key 'launcher.fricton'; did you mean 'launcher.friction'?"),
-        ("catapult", of("launcher", NORMAL), "launcher is a group; its keys are peak_specific_force_g"),
+        ("catapult", of("launcher", NORMAL), "launcher is a group; its keys are kind, peak_specific_force_g"),
         ("catapult", of("launcher.friction", NORMAL),
          "dispersions[0] ('launcher.friction'): 15.9 % of draws would be below 0, which it cannot be; narrow it or use "
          "truncated-normal with low"),
