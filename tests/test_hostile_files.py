@@ -99,11 +99,11 @@ def test_what_is_in_text_and_comments_does_not_count(text: str) -> None:
 
 @pytest.mark.parametrize("name", [*packaged_names(), *presets()])
 def test_all_that_is_shipped_has_room_to_its_bounds(name: str) -> None:
-    """A twentieth of the marks, half of the depth."""
+    """A fifteenth of the marks, half of the depth."""
     text = tomli_w.dumps(load_scenario(name).to_dict() if name in packaged_names() else sheet(name))
     monkey = pytest.MonkeyPatch()
     with monkey.context() as bounds:
-        bounds.setattr(data_files, "MARKS", data_files.MARKS // 20)
+        bounds.setattr(data_files, "MARKS", data_files.MARKS // 15)
         bounds.setattr(data_files, "DEEPEST", data_files.DEEPEST // 2)
         check_shape(text)
 
