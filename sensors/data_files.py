@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 LARGEST = 1_000_000  # bytes; the largest file that is shipped has a hundredth of it
-MARKS = 25_000  # at their slowest, a header of ten parts and keys below it, tomllib needs half a second for so many
+MARKS = 20_000  # at their slowest, a header of ten parts and keys below it, tomllib needs 0.4 s for so many
 DEEPEST = 16  # a list of groups that hold lists of lists has 4
 PARTS = 10  # of a scenario's keys none has more than 4
 WORD = 200
