@@ -21,7 +21,8 @@ AIR = "".join(f'    <property value="0">air/{axis}-rad_sec</property>\n' for axi
 def systems_xml(geometry: Geometry, t: Tables) -> str:
     """Write the system of constants and trim, and name the hand-written ones."""
     return (
-        f'  <system name="constants">\n{_constants(geometry)}{AIR}{factors_xml()}{_trim(geometry, t)}  </system>\n'
+        f'  <system name="constants">\n{_constants(geometry)}{AIR}{factors_xml()}{_trim(geometry, t)}'
+        f"{_started(geometry)}  </system>\n"
         '  <system file="wing"/>\n  <system file="stabiliser"/>\n'
     )
 
@@ -68,6 +69,16 @@ def _stabiliser(geometry: Geometry) -> dict[str, float]:
         "ap/gain/roll-integral-per_sec": gains["roll_integral"],
         "ap/gain/roll-rate-sec": gains["roll_rate"],
     }
+
+
+def _started(geometry: Geometry) -> str:
+    """Write that a turbine runs from the start: it was started on the rail, and idles there until the throttle opens."""
+    if "turbine" not in geometry:
+        return ""
+    return (
+        '    <channel name="turbine"><fcs_function name="fcs/turbine-runs"><function><value>1</value></function>\n'
+        "        <output>propulsion/engine/set-running</output></fcs_function></channel>\n"
+    )
 
 
 def _trim(geometry: Geometry, t: Tables) -> str:
