@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from sensors.bench_log import LATEST, MOST_READ, Source, listed, numbers, parse_map, resolved
-from sensors.tables import MOST_ROWS, brief
+from sensors.tables import MOST_ROWS
+from sensors.text import brief
 from uavsim.logs.formats import Mapped, Table, named, read_tables
 from uavsim.logs.known import COUNTS
 from uavsim.logs.recording import AXES, COLUMNS, GAP, SAMPLED_AND_HELD, SERIES, Array, Origin, Recording, Series

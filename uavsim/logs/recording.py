@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sensors.bench_log import Source
-from sensors.tables import brief
+from sensors.text import brief
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
