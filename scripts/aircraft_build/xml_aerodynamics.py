@@ -153,7 +153,9 @@ def _moments(geometry: Geometry, t: Tables) -> dict[str, dict[str, str]]:
     rolling = _sum(_product(P, _table("Clp", t, ALPHA_DEG)), _product(R, _table("Clr", t, ALPHA_DEG)))
     yawing = _sum(_product(P, _table("Cnp", t, ALPHA_DEG)), _product(R, _table("Cnr", t, ALPHA_DEG)))
     swept = _product(_table("sweep-roll", t, WING), COS, WING_LIFT, BETA)
-    roll = _sum(swept, _product(BY_SPAN, _lifted(t, MACH_WING, rolling)), _product(y, _difference(NORMAL_LEFT, NORMAL_RIGHT)))
+    roll = _sum(
+        swept, _product(BY_SPAN, _lifted(t, MACH_WING, rolling)), _product(y, _difference(NORMAL_LEFT, NORMAL_RIGHT))
+    )
     pitching = _product(BY_CHORD, Q, _lifted(t, MACH_WING, _table("Cmq", t, WING)))
     pitch = _sum(_lifted(t, MACH_WING, _table("Cm", t, ALPHA_DEG)), pitching, _product(-tail, NORMAL))
     yaw = _sum(_product(BY_SPAN, _lifted(t, MACH_WING, yawing)), _product(y, _difference(AXIAL_RIGHT, AXIAL_LEFT)))

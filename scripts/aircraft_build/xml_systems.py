@@ -72,7 +72,7 @@ def _stabiliser(geometry: Geometry) -> dict[str, float]:
 
 
 def _started(geometry: Geometry) -> str:
-    """Write that a turbine runs from the start: it was started on the rail, and idles there until the throttle opens."""
+    """Write that a turbine runs from the start: it was started on the rail, and idles until the throttle opens."""
     if "turbine" not in geometry:
         return ""
     return (

@@ -33,7 +33,7 @@ G0 = 9.80665
 
 PARTS = {
     "accelerometer": ["adxl345", "adxl359", "bmi088", "h3lis331dl", "icm-42688-p", "lsm6dso32", "mpu-6050"],
-    "pressure": ["bmp280", "bmp388", "bmp390", "bmp581", "dps368", "lps22df", "ms5611"],
+    "pressure": ["bmp280", "bmp388", "bmp390", "bmp581", "dps368", "lps22df", "ms5611", "ms5803-02ba"],
     "differential": ["dlvr-l10d", "ms4525do", "ms4525do-005d", "sdp33"],
 }
 KINDS = {
