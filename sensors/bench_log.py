@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sensors.files import look
-from sensors.tables import brief, table_of
+from sensors.tables import table_of
+from sensors.text import brief
 
 Array = NDArray[np.float64]
 
@@ -219,10 +220,10 @@ def _factor(text: str) -> float:
     return factor
 
 
-def listed(names: Sequence[str], most: int = 12) -> str:
-    """Name columns, not too many, and none at length."""
+def listed(names: Sequence[str], most: int = 12, what: str = "columns") -> str:
+    """Name columns, or what else they are, not too many, and none at length."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(map(brief, names[:most])) + more if names else "no columns"
+    return ", ".join(map(brief, names[:most])) + more if names else f"no {what}"
 
 
 def numbers(values: Array, source: Source, name: str) -> tuple[Array, int]:

@@ -13,11 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from sensors.files import Held, is_binary
+from sensors.text import brief
 
 LONGEST_HEAD = 1_000_000  # B, in which the names and the first numbers stand
 MOST_LINES = 3000  # lines that are looked at; the preamble of a Betaflight log has some 200
 MOST_LOOKED_AT = 200_000  # characters of them
 MOST_COLUMNS = 20_000
+MOST_TOLD = 6  # names that are told
 BLANKS = " "  # as a separator: any run of blanks and tabs
 SEPARATORS = (",", ";", "\t", "|", BLANKS)
 COMMENT = re.compile(r"\s*(?:#|//|%|!)+")
@@ -241,6 +243,10 @@ def _without_numbers(encoding: str, data: Sequence[_Line]) -> CsvLayout:
     start = data[1].start if len(data) > 1 else data[0].start + len(data[0].text)
     width = max(len(cut(line.text, separator)) for line in data[:2])
     _check_width(names, width, [])
+    if len(data) == 1 or (len(data) == 2 and _are_units(cut(data[1].text, separator))):
+        shown = ", ".join(brief(name) for name in names[:MOST_TOLD])
+        more = f" and {len(names) - MOST_TOLD} more" if len(names) > MOST_TOLD else ""
+        raise ValueError(f"holds a line of names ({shown}{more}) and no line of numbers below it: nothing was logged")
     none: frozenset[int] = frozenset()
     return CsvLayout(encoding, separator, ".", names, bool(names), (), len(names), start, none, none, ())
 
@@ -259,6 +265,7 @@ def _with_numbers(encoding: str, lines: Sequence[_Line], data: Sequence[_Line], 
     else:
         _check_width(names, bare, rows)
         found = told_apart(names)
+        remarks += _twice(names)
         if len(names) < width:
             remarks.append("every line ends in a separator, behind which nothing stands")
         elif bare < len(names):
@@ -307,6 +314,20 @@ def _names(
         if len(last) > 1 or bare == 1:
             return last, ()
     return None, ()
+
+
+def _twice(names: Sequence[str]) -> list[str]:
+    """Say which names several columns have."""
+    again = [(name, many) for name, many in Counter(name.strip() for name in names).items() if many > 1 and name]
+    if not again:
+        return []
+    told = ", ".join(f"{brief(name)!r} ({many} columns)" for name, many in again[:MOST_TOLD])
+    more = f" and {len(again) - MOST_TOLD} more" if len(again) > MOST_TOLD else ""
+    name = brief(again[0][0])
+    return [
+        f"columns have the same name: {told}{more}; {name!r} is the first of them, the next is called '{name}.1', and "
+        "so on"
+    ]
 
 
 def _is_commented(lines: Sequence[_Line], start: int, names: Sequence[str]) -> bool:

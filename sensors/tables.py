@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sensors.csv_layout import BLANKS, LINE, LONGEST_HEAD, MOST_COLUMNS, cut, is_time, layout_of
 from sensors.files import Held
+from sensors.text import brief
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,7 +30,6 @@ BLOCK = 4_000_000  # B of a text file, read at once
 MOST_LINE = 16_000_000  # B
 BATCH = 100_000  # rows of a Parquet file, read at once
 ROW = 24  # B of a row of a Feather file, by which its rows are guessed
-LONGEST_NAME = 60  # characters of a name that are shown
 LONGEST_REASON = 200  # characters of what a library says
 REMARK = re.compile(rb"(?:(?<=[\r\n])|^|(?<=[ \t]))[ \t]*#[^\r\n]*")
 MANY_BLANKS = re.compile(rb"[ \t]+")
@@ -72,12 +72,6 @@ def table_of(held: Held) -> TableFile:
     if held.head.startswith(b"FEA1"):
         raise ValueError("is a Feather file of version 1: write it anew, as version 2 or as Parquet")
     return ParquetTable(held) if held.head.startswith(b"PAR1") else CsvTable(held)
-
-
-def brief(text: str, most: int = LONGEST_NAME) -> str:
-    """Return a text of bounded length, in which nothing but what is printed stands."""
-    shown = text[:most] if text.isprintable() else "".join(c if c.isprintable() else "\ufffd" for c in text[:most])
-    return shown if len(text) <= most else f"{shown}…"
 
 
 def _too_many(rows: str) -> ValueError:

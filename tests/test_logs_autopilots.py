@@ -14,6 +14,7 @@ import pytest
 from sensors.files import look
 from uavsim.logs import Recording, read_log
 from uavsim.logs.dataflash import LETTERS, OVER
+from uavsim.logs.mavlink_names import NAMES, name_of
 from uavsim.logs.tlog import read_tlog
 
 Row = Mapping[str, float]
@@ -340,6 +341,15 @@ def test_a_telemetry_log_without_what_is_needed_says_what_it_has(tmp_path: Path)
     path = tmp_path / "flight.tlog"
     path.write_bytes(b"".join(struct.pack(">Q", 1_700_000_000_000_000 + 1_000_000 * k) + beat for k in range(50)))
     with pytest.raises(
-        ValueError, match=r"^[^\n]*has no message RAW_IMU or SCALED_IMU or HIGHRES_IMU; it has message 0"
+        ValueError, match=r"^[^\n]*has no message RAW_IMU or SCALED_IMU or HIGHRES_IMU; it has HEARTBEAT; map"
     ):
         read_log([path])
+
+
+def test_messages_of_telemetry_are_called_by_their_names() -> None:
+    """Authority: pymavlink's table of the messages of ArduPilot's dialect."""
+    messages = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega").mavlink_map
+    for number, name in NAMES.items():
+        assert messages[number].msgname == name
+    assert name_of(0) == "HEARTBEAT"
+    assert name_of(60_000) == "message 60000"

@@ -136,7 +136,7 @@ def turned(readings: Array, x: str, y: str, z: str) -> Array:
 @pytest.mark.parametrize(
     ("axes", "words", "launches"),
     [
-        (("+x", "-y", "-z"), ("z up", "map fz=-"), 1),
+        (("+x", "-y", "-z"), ("z up", "fy=-fy,fz=-fz"), 1),
         (("-y", "+x", "+z"), ("lies along +y", "'detector.axes=[\"+y\"]'"), 0),
         (("+y", "-x", "+z"), ("lies along −y", "'detector.axes=[\"-y\"]'"), 0),
         (("-x", "-y", "+z"), ("lies along −x", "'detector.axes=[\"-x\"]'"), 0),

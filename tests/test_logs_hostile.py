@@ -339,8 +339,9 @@ def test_names_in_latin_1_can_be_mapped(tmp_path: Path) -> None:
         (b"", "an empty file"),
         (bytes(4096), "a binary file"),
         (b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 20, "a binary file"),
-        (b"t,fx,fy,fz", "column 't' holds no numbers"),
-        (b"t,fx,fy,fz\n", "column 't' holds no numbers"),
+        (b"t,fx,fy,fz", "holds a line of names (t, fx, fy, fz) and no line of numbers below it"),
+        (b"t,fx,fy,fz\n", "holds a line of names (t, fx, fy, fz) and no line of numbers below it"),
+        (b"t,fx,fy,fz\ns,m/s^2,m/s^2,m/s^2\n", "holds a line of names (t, fx, fy, fz) and no line of numbers"),
         (b"x" * 2_000_000, "no names in the first 1000 kB"),
         (b"# remark\n" * 200_000, "no names in the first 1000 kB"),
         (TEXT.replace("fx", "f" * 100_000).encode(), "it has t, ffffff"),
@@ -691,6 +692,7 @@ def test_a_message_that_was_never_logged_is_said(tmp_path: Path) -> None:
     path.write_bytes(whole("ulog")[: 16 + 3 + 62 + 2 * 21])
     said = refused(lambda: read_log([path], "fx=sensor_combined.x"))
     assert "has no message sensor_combined that was logged (sensor_combined was never logged)" in said
+    assert "it has no logged messages" in said
 
 
 def test_the_command_says_what_is_lost_once_and_nothing_else(tmp_path: Path) -> None:

@@ -168,3 +168,13 @@ def test_altos(tmp_path: Path) -> None:
     assert recording.series["p_static"].values[0] == 101325.0  # noqa: PD011
     assert recording.series["temperature"].values[0] == pytest.approx(294.65)  # noqa: PD011
     assert "gravity" in said(recording)
+
+
+def test_columns_of_the_same_name_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("t,fx,fy,fz,fx\n" + "".join(f"{0.01 * k},1,2,-9.8,7\n" for k in range(100)))
+    recording = read_log([path])
+    assert recording.readings[0, 1] == 1.0
+    said = " | ".join(recording.remarks)
+    assert "columns have the same name: 'fx' (2 columns)" in said
+    assert read_log([path], "fx=fx.1").readings[0, 1] == 7.0

@@ -143,3 +143,12 @@ def test_what_does_not_wrap_stays() -> None:
         found, remarks = unwrapped(values, "fx")
         assert remarks == []
         assert np.array_equal(found, values)
+
+
+@pytest.mark.parametrize(("rate", "by"), [(50.0, 0.3), (200.0, 2.0), (1000.0, 20.0)])
+def test_stamps_that_jump_forward_are_told(tmp_path: Path, rate: float, by: float) -> None:
+    table = frame(rate=rate)
+    assert "jump" not in said(read(tmp_path, table))
+    table.loc[table["t"] > 1.0, "t"] += by
+    table.loc[table["t"] > 2.0 + by, "t"] += 0.5 * by
+    assert "jump: the stamps jump forward 2 times, the longest by" in said(read(tmp_path, table))

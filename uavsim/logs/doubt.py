@@ -17,6 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from uavsim.logs.evidence import Evidence, Rest, collected
+from uavsim.logs.mounting import UP, advised, forward_of, opposite
 from uavsim.logs.recording import AXES, COLUMNS, Array, Clipping, Recording
 from uavsim.onboard.launch.kinds import Need
 from uavsim.onboard.launch.settings import DetectorSettings, if_known
@@ -50,7 +51,7 @@ def doubted(recording: Recording, settings: DetectorSettings, evidence: Evidence
     """
     seen = collected(recording.readings, recording.rate) if evidence is None else evidence
     rest = seen.rest()
-    remarks = [*_unit(rest, recording), *_axes(rest), *_repeats(seen), *_counted(recording), *_others(recording)]
+    remarks = [*_unit(rest, recording), *_repeats(seen), *_counted(recording), *_others(recording)]
     recording = taken(recording, seen)
     remarks += _range(recording, settings)
     return replace(recording, remarks=(*recording.remarks, *remarks))
@@ -120,25 +121,59 @@ def _unit(rest: Rest, recording: Recording) -> Iterator[str]:
 # -- axes ------------------------------------------------------------------------------------------------------------
 
 
-def _axes(rest: Rest) -> Iterator[str]:
-    """Doubt the axes by where up is."""
+def up_of(rest: Rest) -> tuple[str, float] | None:
+    """Return the signed axis that points up by what rest reads, and what it reads there, g; None if none does."""
     near = np.abs(rest.sizes - G0) <= ONE_G * G0
     if near.mean() < SOME if near.size else True:
-        return
-    x, y, z = np.nan_to_num(np.median(rest.vectors[near], axis=0)) / G0
-    if z >= ALONG:
-        yield (
-            f"at rest f_z reads {z:+.2f} g: these axes have z up, and ours have it down; map fz=-…, and fy=-… if their "
-            "y points to the left"
-        )
-    elif abs(y) >= ALONG:
-        sign, minus, own = ("+", "-", "+y") if y > 0.0 else ("−", "", "-y")
-        yield (
-            f"at rest f_y reads {y:+.2f} g: {sign}y points up, and with us -z does; map fz={minus}… of what is y here, "
-            f"or --set 'detector.axes=[\"{own}\"]' if it is launched upwards along it"
-        )
-    elif x <= -ALONG:
-        yield f"at rest f_x reads {x:+.2f} g: −x points up, which is a nose that points down; map fx=-… if it is up"
+        return None
+    reads = (np.nan_to_num(np.median(rest.vectors[near], axis=0)) / G0).tolist()
+    most = max(range(len(AXES)), key=lambda i: abs(reads[i]))
+    if abs(reads[most]) < ALONG:
+        return None
+    return ("+" if reads[most] > 0.0 else "-") + "xyz"[most], reads[most]
+
+
+def settled(recording: Recording, evidence: Evidence) -> tuple[str, float] | None:
+    """Return `up_of` a recording in m/s², by what was collected before it was brought to that."""
+    rest, scale = evidence.rest(), unit_of(evidence, recording.mapping)
+    return up_of(Rest(rest.vectors * scale, rest.sizes * scale))
+
+
+def oriented(
+    recording: Recording,
+    settings: DetectorSettings,
+    up: tuple[str, float] | None,
+    forward: str | None = None,
+    *,
+    launched: bool = False,
+) -> list[str]:
+    """Doubt the axes of a recording by where up is, and say which map turns them.
+
+    Parameters
+    ----------
+    recording
+        What is replayed.
+    settings
+        Of the detector.
+    up
+        As `settled` returns it.
+    forward
+        Signed axis along which there is a force like a launch's, if it is none that the detector reads.
+    launched
+        Whether there is one along an axis that it reads.
+    """
+    along = forward_of(settings.axes) if forward is None else forward
+    if up is None or up[0] in (UP, along):
+        return []
+    axis, reads = up
+    down = axis == opposite(along)
+    what = {
+        "+z": "these axes have z up, and ours have it down",
+        "-x": "−x points up, which is a nose that points down",
+    }.get(axis, f"{axis.replace('-', '−')} points up, and with us −z does")
+    mend = advised(recording.mapping, recording.origins, opposite(along) if down else along, axis)
+    said = "" if down and launched else f"; {mend} turns them{', if the nose is up' if down else ''}"
+    return [f"at rest f_{axis[1]} reads {reads:+.2f} g: {what}{said}"]
 
 
 # -- readings that do not live, or end -------------------------------------------------------------------------------

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from sensors.bench_log import Source, listed, resolved
 from sensors.files import Held, look
-from sensors.tables import CsvTable, TableFile, brief, table_of
+from sensors.tables import CsvTable, TableFile, table_of
+from sensors.text import brief
 from uavsim.logs import tlog
 from uavsim.logs.autopilots import ARDUPILOT, MAVLINK, PX4, Autopilot, Fields
 from uavsim.logs.dataflash import HEAD, TEXT, read_dataflash
@@ -228,8 +229,9 @@ def _missing_message(lacking: Sequence[Key], kind: Autopilot, log: Logged) -> Va
     never = f" that was logged ({', '.join(silent)} was never logged)" if silent else ""
     first, axes = next(iter(kind.force.items()))
     damage = f" (the {kind.log} {log.damage})" if log.damage else ""
+    has = listed(log.names, 30, "logged messages")
     return ValueError(
-        f"has no message {what}{never}; it has {listed(log.names, 30)}; map fx={first}.{axes[0]}, or what holds the "
+        f"has no message {what}{never}; it has {has}; map fx={first}.{axes[0]}, or what holds the "
         f"specific force{damage}"
     )
 

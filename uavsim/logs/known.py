@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sensors.bench_log import Source
-from sensors.tables import brief
+from sensors.text import brief
 from uavsim.logs.recording import AXES, SERIES
 from uavsim.truth import STANDARD_GRAVITY
 

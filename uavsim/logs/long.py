@@ -17,10 +17,11 @@ import numpy as np
 
 from uavsim.files import whole
 from uavsim.flight import UNITS, Flight, frame
-from uavsim.logs.doubt import doubted, unit_of
+from uavsim.logs.doubt import doubted, oriented, settled, unit_of
 from uavsim.logs.informed import sources
 from uavsim.logs.recording import Array, Gap, Recording
 from uavsim.logs.stream import Shown, Stream, Survey
+from uavsim.logs.unseen import forward_in
 from uavsim.logs.watch import Watch
 from uavsim.onboard import launch
 
@@ -102,7 +103,16 @@ def replay_long(
             "a log that is read in parts is searched by the force alone; what the detector is told besides it is told "
             "where a flight is replayed by itself"
         )
-    said += [remark for remark in doubted(stretch, settings, survey.evidence).remarks if remark not in said]
+    why = flight.score["recording"].get("unseen")
+    axes = oriented(
+        stretch,
+        settings,
+        settled(stretch, survey.evidence),
+        None if why is None else forward_in(why),
+        launched=bool(flight.score["recording"]["detections"]),
+    )
+    doubts = (*doubted(stretch, settings, survey.evidence).remarks, *axes)
+    said += [remark for remark in doubts if remark not in said]
     tables = {**flight.tables, "accelerometer": thin.table(stretch.readings)}
     spans = spans_of(watch.detections, survey)
     return LongReplay(replace(flight, tables=tables), ("accelerometer",), spans)

@@ -1,17 +1,18 @@
 """A log's tables turned into one recording: which column is which, in what unit, and files joined on time."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from sensors.bench_log import LATEST, MOST_READ, Source, listed, numbers, parse_map, resolved
-from sensors.tables import MOST_ROWS, brief
+from sensors.tables import MOST_ROWS
+from sensors.text import brief
 from uavsim.logs.formats import Mapped, Table, named, read_tables
 from uavsim.logs.known import COUNTS
-from uavsim.logs.recording import AXES, COLUMNS, GAP, SAMPLED_AND_HELD, SERIES, Array, Recording, Series
+from uavsim.logs.recording import AXES, COLUMNS, GAP, SAMPLED_AND_HELD, SERIES, Array, Origin, Recording, Series
 from uavsim.logs.stamps import FEWEST, BackwardsError, Stamped, stamped
 from uavsim.logs.wraps import unwrapped
 from uavsim.truth import STANDARD_GRAVITY
@@ -36,6 +37,7 @@ class Piece:
     series: dict[str, Series] = field(default_factory=dict)
     cuts: list[int] = field(default_factory=list)
     other: str = ""  # the name of another accelerometer than that which is replayed
+    origins: dict[str, Origin] = field(default_factory=dict)
 
 
 def read_log(paths: Sequence[Path], mapping: str | None = None) -> Recording:
@@ -98,7 +100,8 @@ def recording_of(paths: Sequence[Path], mapping: str | None, tables: Sequence[Ta
         if len(readings) > MOST_ROWS:
             raise ValueError(f"{len(readings)} rows; at most {MOST_ROWS} are replayed")
         said = (*remarks, *_remarks(readings))
-        recording = Recording(names, mapping or "", readings, said, series, tuple(cuts), others)
+        origins = {name: origin for piece in reversed(pieces) for name, origin in piece.origins.items()}
+        recording = Recording(names, mapping or "", readings, said, series, tuple(cuts), others, origins)
         _check_rate(recording)
         _check_numbers(readings[:, 1:])
         if not any(factors.values()):  # else somebody has thought of units
@@ -123,6 +126,7 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
         return None
     values = _values(table, held, remarks)
     t = values.pop("t")
+    scale = 1.0
     if table.counts and axes:
         scale = one_g(np.column_stack([values[axis] for axis in axes]), table.name, remarks)
         values |= {axis: values[axis] * scale for axis in axes}
@@ -142,7 +146,12 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
         check_unit(np.column_stack([force[axis] for axis in AXES]))
     series = _series_of(table, held, values, rows, remarks)
     other = table.label.removeprefix(OTHER) if table.label.startswith(OTHER) else ""
-    return Piece(table.name, rows.t, force, factors, series, rows.cuts, other)
+    origins = {
+        axis: Origin(replace(held[axis], factor=held[axis].factor * scale), factors[axis] is not None) for axis in axes
+    }
+    if not table.named:
+        origins["t"] = Origin(clock)
+    return Piece(table.name, rows.t, force, factors, series, rows.cuts, other, origins)
 
 
 def is_scaled(held: Mapped, axes: Sequence[str]) -> bool:

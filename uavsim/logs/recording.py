@@ -7,6 +7,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from sensors.bench_log import Source
+from sensors.text import brief
 from uavsim.truth import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
@@ -92,6 +94,28 @@ class Series:
     source: str
 
 
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """What one of ours was read from.
+
+    Attributes
+    ----------
+    source : Source
+    stated : bool
+        Whether its factor was stated, or known by the format, be it 1.
+    """
+
+    source: Source
+    stated: bool = False
+
+    def written(self, *, negated: bool = False) -> str:
+        """Return it as a map says it, or with the other sign."""
+        sign = -1.0 if negated else 1.0
+        factor, offset = sign * self.source.factor, sign * self.source.offset
+        times = f"*{abs(factor):.10g}" if self.stated or abs(factor) != 1.0 else ""
+        return f"{'-' if factor < 0.0 else ''}{brief(self.source.column)}{times}{f'{offset:+.10g}' if offset else ''}"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
     """Readings of specific force from somebody's log, and what else it holds.
@@ -112,6 +136,8 @@ class Recording:
         Rows at which a part begins, whose clock began anew or whose rate is another; none if the log is of one part.
     others : mapping
         Readings of the log's other accelerometers, as `readings`, by the names of their messages.
+    origins : mapping
+        What each axis was read from; and t, where a map must say it.
     """
 
     files: tuple[str, ...]
@@ -121,6 +147,7 @@ class Recording:
     series: Mapping[str, Series] = field(default_factory=dict)
     cuts: tuple[int, ...] = ()
     others: Mapping[str, Array] = field(default_factory=dict)
+    origins: Mapping[str, Origin] = field(default_factory=dict)
 
     @property
     def parts(self) -> list[range]:

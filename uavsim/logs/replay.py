@@ -13,7 +13,8 @@ from uavsim import __version__
 from uavsim.failure import FAILED, PartError
 from uavsim.files import without_none
 from uavsim.flight import Flight, frame
-from uavsim.logs.doubt import backwards, doubted, ends
+from uavsim.logs.doubt import backwards, doubted, ends, oriented, settled
+from uavsim.logs.evidence import collected
 from uavsim.logs.informed import sources, telling
 from uavsim.logs.recording import AXES, COLUMNS, Array, Recording
 from uavsim.logs.unseen import unseen
@@ -50,7 +51,8 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
     rate = recording.rate
     used = launch.DetectorSettings() if settings is None else settings
     check_axes(recording, used)
-    recording = doubted(recording, used)
+    evidence = collected(recording.readings, rate)
+    recording = doubted(recording, used, evidence)
     columns, detections, reason = _watch(used, recording)
     t, fx, fy, fz = recording.readings.T
     tables = {
@@ -65,10 +67,14 @@ def replay_log(recording: Recording, settings: launch.DetectorSettings | None = 
     }
     told = sources(launch.build(used, rate), recording.series)
     recording = replace(recording, remarks=(*recording.remarks, *told, *backwards(recording, used, detections)))
+    up, forward = settled(recording, evidence), None
     score = _score(recording, used.kind, detections)
     if not detections and not reason:
         why = unseen(recording, used)
-        score["recording"] |= {"unseen": why.document(), "remarks": [*recording.remarks, *why.remarks()]}
+        forward = why.forward
+        said = why.remarks(recording, None if up is None else up[0])
+        score["recording"] |= {"unseen": why.document(), "remarks": [*recording.remarks, *said]}
+    score["recording"]["remarks"] += oriented(recording, used, up, forward, launched=bool(detections))
     if reason:
         score |= {"outcome": FAILED, "reason": reason}
     return Flight(about, tables, events, score)

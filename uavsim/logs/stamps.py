@@ -24,7 +24,8 @@ MOST_LEFT_OUT = 0.1  # share of rows that may be left out for their stamps: beyo
 FEWEST = 10  # readings in a part, and in a log
 MOST_CUTS = 200  # clocks in a log: beyond, it is no time
 COARSE = 0.2  # share of rows with the stamp of the row before, from which stamps are coarse and no row is twice
-JUMP = 60.0  # s between two readings, from which the clock may have been set
+JUMP = 60.0  # s between two readings, from which each jump is told by itself
+SKIPPED, SKIPPED_FOR = 5.0, 0.1  # median intervals, and s, between two readings, from which they jump
 CHANGED = 1.4  # ratio of median intervals from which the rate changes; real oscillators keep 1.1
 STRETCHES, STRETCH = 40, 40  # into which a log is cut to see that, and least rows of each
 
@@ -244,12 +245,7 @@ def _look_at_rates(of: Stamped) -> None:
     """Tell jumps of the clock; cut where the rate changes for good."""
     step = np.diff(of.t)
     usual = _usual(of.t)
-    jumps = np.flatnonzero(step > max(JUMP, NEAR_WRAP * usual))
-    jumps = np.setdiff1d(jumps, np.array(of.cuts, int) - 1)
-    for at in jumps[:3]:
-        of.remarks.append(
-            f"jump: from {of.t[at]:.10g} to {of.t[at + 1]:.10g} s there are no readings, or the clock was set forward"
-        )
+    _tell_jumps(of, step, usual)
     size = max(STRETCH, of.t.size // STRETCHES)
     if of.t.size < 2 * size:
         return
@@ -271,6 +267,26 @@ def _look_at_rates(of: Stamped) -> None:
             "and each part replayed at its own rate"
         )
     of.cuts = sorted({*of.cuts, *(at for at, _, _ in changes if FEWEST <= at <= of.t.size - FEWEST)})
+
+
+def _tell_jumps(of: Stamped, step: Array, usual: float) -> None:
+    """Tell where the clock jumps forward: the longest by themselves, the others together."""
+    skips = np.flatnonzero(step > max(SKIPPED_FOR, SKIPPED * usual))
+    skips = np.setdiff1d(skips, np.array(of.cuts, int) - 1)
+    far = skips[step[skips] > max(JUMP, NEAR_WRAP * usual)][:3]
+    for at in far:
+        of.remarks.append(
+            f"jump: from {of.t[at]:.10g} to {of.t[at + 1]:.10g} s there are no readings, or the clock was set forward"
+        )
+    rest = np.setdiff1d(skips, far)
+    if rest.size:
+        most = rest[int(np.argmax(step[rest]))]
+        many = f" {rest.size} times" if rest.size > 1 else ""
+        which = ", the longest" if many else ""
+        of.remarks.append(
+            f"jump: the stamps jump forward{many}{which} by {step[most]:.4g} s from {of.t[most]:.10g} to "
+            f"{of.t[most + 1]:.10g} s: readings are missing, or the clock was set"
+        )
 
 
 def _changing(t: Array, start: int, end: int, before: float, after: float) -> int:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uavsim.logs.logged import Key, Logged, check_rows
+from uavsim.logs.mavlink_names import name_of
 
 STAMP = Struct(">Q")
 V1, V2 = 0xFE, 0xFD
@@ -198,7 +199,7 @@ def _logged(
             tables[message.name, 0] = {name: table[name] for name in message.layout.names or ()}
             tables[message.name, 0]["received"] = 1e-6 * np.array(stamps[of, number], float)
     _add_times(tables)
-    names = tuple(sorted(name for name, _ in tables)) + tuple(f"message {number}" for number in sorted(other))
+    names = tuple(sorted(name for name, _ in tables)) + tuple(map(name_of, sorted(other)))
     chosen = {key: table for key, table in tables.items() if key[0] in wanted}
     return Logged(chosen, names, (), lost, truncated)
 

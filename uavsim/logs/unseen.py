@@ -6,14 +6,15 @@ with a lower level, the highest that is enough, and the other kinds as they are 
 launch nobody can tell from a force alone.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any, get_args
 
 import numpy as np
 
 from uavsim.logs.doubt import need_of
-from uavsim.logs.recording import AXES, Array, Recording
+from uavsim.logs.mounting import UP, advised
+from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
 from uavsim.onboard.launch.settings import if_known, with_key
 from uavsim.truth import STANDARD_GRAVITY
@@ -88,23 +89,35 @@ class Unseen:
         plain = asdict(self)
         return plain | {name: list(plain[name]) for name in ("axes", "seen", "nearest")}
 
-    def remarks(self) -> list[str]:
-        """Say which force lies along an axis that the detector does not read."""
+    @property
+    def forward(self) -> str | None:
+        """The axis that the detector does not read along which the greatest force like a launch's lies."""
+        return forward_in(self.document())
+
+    def remarks(self, recording: Recording, up: str | None) -> list[str]:
+        """Say which force lies along an axis that the detector does not read, of a recording of which up is known."""
         greatest = {one.axis: one for one in self.seen}
         return [
             f"a force like a launch's lies along {one.axis.replace('-', '−')}, "
             f"{greatest[one.axis].greatest / G0:.3g} g at {greatest[one.axis].time:.3f} s, and the detector reads "
-            f"{' or '.join(self.axes)}: --set {one.set}, or a map that makes it fx: {mapped(one.axis)}"
+            f"{' or '.join(self.axes)}: {mend} makes it fx"
             for one in self.nearest
             if one.axis not in self.axes
+            for mend in [_mend(one, recording, up)]
         ]
 
 
-def mapped(axis: str) -> str:
-    """Return how a map turns a signed axis into x: by a quarter turn about y or z, or a half one."""
-    x, y, z = AXES
-    turned = {"+y": f"fx={y}, fy=-{x}", "-y": f"fx=-{y}, fy={x}", "+z": f"fx={z}, fz=-{x}", "-z": f"fx=-{z}, fz={x}"}
-    return turned.get(axis, f"fx=-{x}, fy=-{y}") + ", of what these are now"
+def forward_in(document: Mapping[str, Any]) -> str | None:
+    """Return `Unseen.forward` of its plain values."""
+    others = [one["axis"] for one in document["nearest"] if one["axis"] not in document["axes"]]
+    greatest = {one["axis"]: one["greatest"] for one in document["seen"]}
+    return max(others, key=lambda axis: greatest[axis], default=None)
+
+
+def _mend(one: Nearest, recording: Recording, up: str | None) -> str:
+    """Return what makes an axis be read: a map, or the setting where that alone leaves no doubt of the axes."""
+    turn = advised(recording.mapping, recording.origins, one.axis, up)
+    return f"--set {one.set} reads it, and {turn}" if one.set and up in (None, UP, one.axis) else turn
 
 
 def unseen(recording: Recording, settings: launch.DetectorSettings) -> Unseen:
@@ -189,14 +202,22 @@ def _first(settings: launch.DetectorSettings, rate: float, places: Sequence[Arra
 def _other_axes(
     recording: Recording, settings: launch.DetectorSettings, axes: Sequence[str], places: dict[str, list[Array]]
 ) -> Iterator[Nearest]:
-    """Try the same rule along the axes that it does not read."""
+    """Try the same rule along the axes that it does not read; ours for one that can read no other."""
+    if settings.axes == "any":
+        return
+    ours = if_known(settings).ours
+    base = settings if ours else launch.DetectorSettings()
+    kind = "" if ours else f"detector.kind={base.kind} --set "
     for axis, near in places.items():
-        if axis not in axes and settings.axes != "any" and if_known(settings).ours:
-            other = replace(settings, axes=(axis,))  # type: ignore[arg-type]
+        if axis not in axes:
+            other = replace(base, axes=(axis,))  # type: ignore[arg-type]
+            quick = launch.DetectorSettings(axes=(axis,))  # type: ignore[arg-type]
             times = [(_first(other, recording.rate, [one]), one) for one in near]
-            found = min((t for t, one in times if t is not None and _from_rest(one, t)), default=None)
+            begins = [(t, _first(quick, recording.rate, [one]), one) for t, one in times if t is not None]
+            # A rule with a delay detects in the stroke or behind it: what was before is told by one without.
+            found = min((t for t, b, one in begins if _from_rest(one, t if b is None else min(t, b))), default=None)
             if found is not None:
-                yield Nearest(f"'detector.axes=[\"{axis}\"]'", axis, found)
+                yield Nearest(f"{kind}'detector.axes=[\"{axis}\"]'", axis, found)
 
 
 def _from_rest(readings: Array, t: float) -> bool:
