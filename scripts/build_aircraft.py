@@ -2,7 +2,8 @@
 
 Writes AIRCRAFT_DIR/NAME.xml and AIRCRAFT_DIR/engine/*.xml; nothing in them is edited by hand. The header carries the
 SHA-256 of geometry.toml, which a test compares. The systems that NAME.xml names are written by hand, or taken from the
-aircraft that geometry.toml names. How the numbers come about: aircraft_build/mass.py, aircraft_build/aerodynamics.py.
+aircraft that geometry.toml names. How the numbers come about: aircraft_build/mass.py, aircraft_build/aerodynamics.py,
+aircraft_build/mach.py and aircraft_build/turbine.py.
 """
 
 import hashlib
@@ -35,7 +36,7 @@ def build(directory: Path) -> list[Path]:
 
 
 def take_systems(directory: Path, geometry: Geometry) -> list[Path]:
-    """Copy the hand-written systems of another aircraft, where geometry.toml names its folder; return their paths."""
+    """Copy the systems of another aircraft, where geometry.toml names their folder, and return their paths."""
     if "systems" not in geometry:
         return []
     systems = directory / "systems"

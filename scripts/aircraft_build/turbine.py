@@ -1,8 +1,8 @@
 """Thrust of a small turbojet over Mach number and height, by its cycle.
 
 One shaft at constant speed and turbine inlet temperature, the turbine's nozzle choked, the jet's nozzle expanding to
-the air's pressure (Saravanamuttoo, Rogers, Cohen, Gas Turbine Theory, 5th ed., ch. 3 and 8; c_p and γ of cold and hot gas
-as there):
+the air's pressure (Saravanamuttoo, Rogers, Cohen, Gas Turbine Theory, 5th ed., ch. 3 and 8; c_p and γ of cold and
+hot gas as there):
 
     T₂ = T (1 + 0.2 M²),  p₂ = p (1 + η_i 0.2 M²)^3.5
     T₃ = T₂ + ΔT_c,       p₃ = p₂ (1 + η_c ΔT_c/T₂)^3.5        ΔT_c of the design point: it goes with the speed squared

@@ -78,7 +78,7 @@ def _frame(axis: str) -> str:
 def _compressibility(t: Tables) -> dict[str, str]:
     """The factors of the Mach number; none of a slow aircraft."""
     factors = {MACH_WING: "mach-wing", MACH_TAIL: "mach-tail", MACH_FIN: "mach-fin"}
-    return {name: _product(_table(table, t, MACH)) for name, table in factors.items() if table in t}
+    return {name: _table(table, t, MACH) for name, table in factors.items() if table in t}
 
 
 def _lifted(t: Tables, factor_of: str, value: str) -> str:

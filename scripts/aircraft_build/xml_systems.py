@@ -7,6 +7,7 @@ from .factors import factors_xml
 from .geometry import WING_POSITIONS, Geometry
 from .mass import panel_masses
 from .trim import trim_deflections
+from .xml_engine import NEWTON
 
 INCHES = 1 / 0.0254  # in/m, exact
 KG_TO_LB = 1.0 / 0.45359237  # exact, international pound
@@ -72,12 +73,27 @@ def _stabiliser(geometry: Geometry) -> dict[str, float]:
 
 
 def _started(geometry: Geometry) -> str:
-    """Write that a turbine runs from the start: it was started on the rail, and idles until the throttle opens."""
+    """Write that a turbine runs from the start, idles until the throttle opens, and burns what it should.
+
+    JSBSim lets no turbine burn less than 107 lb/h (thrust/lbf)^0.2, which a small one does not at full thrust: what is
+    too much flows back into the tank.
+    """
     if "turbine" not in geometry:
         return ""
+    turbine, hour = geometry["turbine"], 3600.0
+    idle = turbine["idle_flow"] * KG_TO_LB
+    full = turbine["consumption"] * turbine["thrust"] / hour * KG_TO_LB
+    per_thrust = (full - idle) / (turbine["thrust"] * NEWTON)
     return (
-        '    <channel name="turbine"><fcs_function name="fcs/turbine-runs"><function><value>1</value></function>\n'
-        "        <output>propulsion/engine/set-running</output></fcs_function></channel>\n"
+        '    <channel name="turbine">\n'
+        '      <fcs_function name="fcs/turbine-runs"><function><value>1</value></function>\n'
+        "        <output>propulsion/engine/set-running</output></fcs_function>\n"
+        '      <fcs_function name="fcs/turbine-spares"><function><difference>\n'
+        f"        <property>propulsion/engine/fuel-flow-rate-pps</property><value>{idle:.7g}</value>\n"
+        f"        <product><value>{per_thrust:.7g}</value><max><value>0</value>"
+        "<property>propulsion/engine/thrust-lbs</property></max></product>\n"
+        "        </difference></function><output>propulsion/tank/external-flow-rate-pps</output></fcs_function>\n"
+        "    </channel>\n"
     )
 
 
