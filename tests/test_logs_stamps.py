@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_logs import detections, frame
 
-from uavsim.logs import Recording, read_log
+from uavsim.logs import Recording, read_log, replay_log
 from uavsim.logs.stamps import BackwardsError, stamped
-from uavsim.logs.wraps import unwrapped
+from uavsim.logs.wraps import suspected, unwrapped
 
 FOUND = 3.01
 
@@ -152,3 +152,30 @@ def test_stamps_that_jump_forward_are_told(tmp_path: Path, rate: float, by: floa
     table.loc[table["t"] > 1.0, "t"] += by
     table.loc[table["t"] > 2.0 + by, "t"] += 0.5 * by
     assert "jump: the stamps jump forward 2 times, the longest by" in said(read(tmp_path, table))
+
+
+@pytest.mark.parametrize("rate", [50.0, 100.0, 200.0, 500.0])
+@pytest.mark.parametrize(("reach", "peak"), [(5.0, 7.0), (6.0, 9.0), (8.0, 11.0)])
+def test_readings_that_wrap_to_the_middle_are_named(tmp_path: Path, rate: float, reach: float, peak: float) -> None:
+    """A stroke passes the end of the range between two samples: the reading after it is near neither end."""
+    table, g = frame(rate=rate), 9.80665
+    push = peak * g * np.clip(np.minimum((table["t"] - 3.0) / 0.01, (3.3 - table["t"]) / 0.02), 0.0, 1.0)
+    force = np.random.default_rng(7).normal(1.5, 0.5, len(table)) + push
+    table["fx"] = (force + reach * g) % (2.0 * reach * g) - reach * g
+    score = replay_log(read(tmp_path, table)).score["recording"]
+    right = bool(score["detections"]) and score["detections"][0] < 3.1
+    told = " | ".join(score["remarks"])
+    assert right or "wrap" in told or "lies along −x" in told
+
+
+def test_shocks_arrests_and_burnouts_do_not_wrap() -> None:
+    t = np.arange(4000) / 200.0
+    for seed in range(60):
+        noise = np.random.default_rng(seed)
+        f = noise.normal(0.0, noise.choice([0.1, 0.5, 2.0, 5.0]), t.size) + 1.0
+        f += 68.0 * ((t > 3.0) & (t < 3.3)) - 25.0 * ((t > 3.3) & (t < 5.0))  # a stroke, and drag behind it
+        since = np.maximum(t - noise.uniform(6.0, 12.0), 0.0)
+        f += noise.uniform(20.0, 100.0) * np.exp(-since / 0.03) * np.sin(2.0 * np.pi * 40.0 * since)
+        f -= 78.0 * ((t > 15.0) & (t < 15.4))
+        for limit in (40.0, 80.0, 160.0):
+            assert suspected(np.clip(f, -limit, limit), t, "fx") == []

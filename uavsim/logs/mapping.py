@@ -14,7 +14,7 @@ from uavsim.logs.formats import Mapped, Table, named, read_tables
 from uavsim.logs.known import COUNTS
 from uavsim.logs.recording import AXES, COLUMNS, GAP, SAMPLED_AND_HELD, SERIES, Array, Origin, Recording, Series
 from uavsim.logs.stamps import FEWEST, BackwardsError, Stamped, stamped
-from uavsim.logs.wraps import unwrapped
+from uavsim.logs.wraps import suspected, unwrapped
 from uavsim.truth import STANDARD_GRAVITY
 
 SLOWEST, FASTEST = 1.0, 20_000.0  # Hz, median rates that are understood
@@ -296,7 +296,7 @@ def _merged(pieces: list[Piece]) -> tuple[Array, list[int], list[str]]:
     remarks = []
     for axis, values in force.items():
         force[axis], said = unwrapped(values, axis)
-        remarks += said
+        remarks += said or suspected(values, base.t, axis)
     return _table_of(Piece(base.name, base.t, force, {})), base.cuts, remarks
 
 

@@ -13,7 +13,7 @@ from typing import Any, get_args
 import numpy as np
 
 from uavsim.logs.doubt import need_of
-from uavsim.logs.mounting import UP, advised
+from uavsim.logs.mounting import UP, advised, opposite
 from uavsim.logs.recording import Array, Recording
 from uavsim.onboard import launch
 from uavsim.onboard.launch.settings import if_known, with_key
@@ -27,6 +27,8 @@ LOWEST = 1.8 * G0  # m/s², level below which no launch is looked for: handling 
 STEPS = 20  # levels that are tried
 STEADY, STRETCHES = (0.7, 0.1), 6  # s before a detection along another axis, in so many stretches
 UNSTEADY = 0.5 * G0  # m/s², by which the means of the stretches differ in flight; those of a rail that shakes do not
+PULL, PULL_FOR = 1.5 * G0, (0.08, 1.0)  # m/s² and s of a pull against the launch that a reading that wraps shows, too
+PULL_EDGE = 0.03  # s, or two readings, in which it begins or ends
 WORTH = 1.3 * G0  # m/s², force along an axis from which on it is looked at
 
 
@@ -97,7 +99,7 @@ class Unseen:
     def remarks(self, recording: Recording, up: str | None) -> list[str]:
         """Say which force lies along an axis that the detector does not read, of a recording of which up is known."""
         greatest = {one.axis: one for one in self.seen}
-        return [
+        others = [
             f"a force like a launch's lies along {one.axis.replace('-', '−')}, "
             f"{greatest[one.axis].greatest / G0:.3g} g at {greatest[one.axis].time:.3f} s, and the detector reads "
             f"{' or '.join(self.axes)}: {mend} makes it fx"
@@ -105,6 +107,9 @@ class Unseen:
             if one.axis not in self.axes
             for mend in [_mend(one, recording, up)]
         ]
+        told = {one.axis for one in self.nearest}
+        against = [opposite(axis) for axis in self.axes if len(self.axes) == 1 and opposite(axis) not in told]
+        return [*others, *(said for axis in against for said in _pulls(recording, axis))]
 
 
 def forward_in(document: Mapping[str, Any]) -> str | None:
@@ -112,6 +117,26 @@ def forward_in(document: Mapping[str, Any]) -> str | None:
     others = [one["axis"] for one in document["nearest"] if one["axis"] not in document["axes"]]
     greatest = {one["axis"]: one["greatest"] for one in document["seen"]}
     return max(others, key=lambda axis: greatest[axis], default=None)
+
+
+def _pulls(recording: Recording, axis: str) -> list[str]:
+    """Name the first pull that begins or ends at once, along an axis against that of the launch."""
+    t, f = recording.readings[:, 0], _force(recording.readings, axis)
+    edges = np.diff(np.concatenate(([0], (f > PULL).astype(np.int8), [0])))
+    for first, stop in zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True):
+        lasting = float(t[stop - 1] - t[first])
+        if not PULL_FOR[0] <= lasting <= PULL_FOR[1]:
+            continue
+        level = float(np.median(f[first:stop]))
+        n = max(2, round(PULL_EDGE * recording.rate))
+        before, after = f[max(0, first - n)], f[min(f.size - 1, stop + n - 1)]
+        if level > PULL and min(abs(before), abs(after)) < 0.3 * level:
+            return [
+                f"f_{axis[1]} pulls backwards, along {axis.replace('-', '−')}, with {level / G0:.3g} g for "
+                f"{lasting:.2g} s from {t[first]:.3f} s on: an arrest, or a wrap, as of a push of more than the "
+                "reading's integer can hold"
+            ]
+    return []
 
 
 def _mend(one: Nearest, recording: Recording, up: str | None) -> str:
