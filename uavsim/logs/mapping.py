@@ -79,7 +79,9 @@ def recording_of(paths: Sequence[Path], mapping: str | None, tables: Sequence[Ta
     pieces = []
     for table in tables:
         with named(table.name):
-            piece = _piece(table, sources, alone=len(tables) == 1, remarks=remarks)
+            piece = _piece(table, _of_other(table, sources), alone=len(tables) == 1, remarks=remarks)
+        if piece is None and table.label.startswith(OTHER):
+            continue  # the map is of columns that it does not have
         if piece is None:
             remarks.append(f"{table.name} holds none of {', '.join(AXES)} with a time and is left out")
         else:
@@ -153,6 +155,15 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
     if not table.named:
         origins["t"] = Origin(clock)
     return Piece(table.name, rows.t, force, factors, series, rows.cuts, other, origins)
+
+
+def _of_other(table: Table, sources: Mapped) -> Mapped:
+    """Return a map as it is for another accelerometer: of the same fields of its own message."""
+    if not table.label.startswith(OTHER):
+        return sources
+    own = table.label.removeprefix(OTHER)
+    first = f"{own.partition('[')[0]}."
+    return {ours: replace(one, column=one.column.replace(first, f"{own}.", 1)) for ours, one in sources.items()}
 
 
 def is_scaled(held: Mapped, axes: Sequence[str]) -> bool:
