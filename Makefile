@@ -16,7 +16,7 @@ help:
 	@echo "make recordings  replay the logs of the folder UAVSIM_RECORDINGS against their right answers"
 	@echo "make bench     what a step costs"
 	@echo "make docs-numbers  run what the docs show and has not been run, and write their pages (half an hour)"
-	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 (installs AeroSandbox)"
+	@echo "make aircraft  rebuild the aerodynamic tables of aircraft/fw8 and fw25 (installs AeroSandbox)"
 	@echo "make clean     remove the environment and caches"
 
 fly: $(VENV)/.fly
@@ -58,6 +58,7 @@ docs-numbers: $(VENV)/.dev
 aircraft: $(VENV)/.dev
 	$(PIP) install -q -e '.[aircraft]'
 	$(BIN)/python scripts/build_aircraft.py aircraft/fw8
+	$(BIN)/python scripts/build_aircraft.py aircraft/fw25
 
 # A stamp is only written after a whole installation, so an interrupted one is simply done again.
 $(BIN)/python:

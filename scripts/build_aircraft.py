@@ -1,8 +1,9 @@
 """Build an aircraft's JSBSim files from its geometry: python scripts/build_aircraft.py aircraft/fw8.
 
 Writes AIRCRAFT_DIR/NAME.xml and AIRCRAFT_DIR/engine/*.xml; nothing in them is edited by hand. The header carries the
-SHA-256 of geometry.toml, which a test compares. The systems that NAME.xml names are written by hand. How the numbers
-come about: aircraft_build/mass.py and aircraft_build/aerodynamics.py.
+SHA-256 of geometry.toml, which a test compares. The systems that NAME.xml names are written by hand, or taken from the
+aircraft that geometry.toml names. How the numbers come about: aircraft_build/mass.py, aircraft_build/aerodynamics.py,
+aircraft_build/mach.py and aircraft_build/turbine.py.
 """
 
 import hashlib
@@ -14,8 +15,10 @@ from aircraft_build.aerodynamics import tables
 from aircraft_build.geometry import Geometry, read_geometry
 from aircraft_build.xml_aerodynamics import aerodynamics_xml
 from aircraft_build.xml_airframe import mass_xml, metrics_xml, propulsion_xml, reactions_xml
-from aircraft_build.xml_engine import motor_xml, propeller_xml
+from aircraft_build.xml_engine import engine_files
 from aircraft_build.xml_systems import systems_xml
+
+DESCRIPTION = "Electric folding-wing aircraft"  # of geometry.toml that has none
 
 
 def build(directory: Path) -> list[Path]:
@@ -23,16 +26,25 @@ def build(directory: Path) -> list[Path]:
     source = directory / "geometry.toml"
     geometry = read_geometry(source)
     name, engine = geometry["name"], directory / "engine"
-    contents = {
-        engine / f"{name}_motor.xml": motor_xml(geometry),
-        engine / f"{name}_propeller.xml": propeller_xml(geometry),
-        directory / f"{name}.xml": aircraft_xml(geometry),
-    }
+    contents = {engine / file: text for file, text in engine_files(geometry).items()}
+    contents[directory / f"{name}.xml"] = aircraft_xml(geometry)
     head = '<?xml version="1.0"?>\n' + header(source)
     engine.mkdir(exist_ok=True)
     for path, text in contents.items():
         path.write_text(head + text, encoding="utf-8", newline="\n")
-    return list(contents)
+    return list(contents) + take_systems(directory, geometry)
+
+
+def take_systems(directory: Path, geometry: Geometry) -> list[Path]:
+    """Copy the systems of another aircraft, where geometry.toml names their folder, and return their paths."""
+    if "systems" not in geometry:
+        return []
+    systems = directory / "systems"
+    systems.mkdir(exist_ok=True)
+    taken = sorted((directory / geometry["systems"]).glob("*.xml"))
+    for path in taken:
+        (systems / path.name).write_bytes(path.read_bytes())
+    return [systems / path.name for path in taken]
 
 
 def header(source: Path) -> str:
@@ -50,7 +62,7 @@ def aircraft_xml(geometry: Geometry) -> str:
     return (
         f'<fdm_config name="{geometry["name"]}" version="2.0" release="BETA">\n'
         "  <fileheader>\n    <author>uavsim</author>\n"
-        "    <description>Electric folding-wing aircraft</description>\n  </fileheader>\n"
+        f"    <description>{geometry.get('description', DESCRIPTION)}</description>\n  </fileheader>\n"
         + metrics_xml(geometry)
         + mass_xml(geometry)
         + "  <ground_reactions></ground_reactions>\n"

@@ -9,8 +9,8 @@ estimator: this module alone copies them from the one into the other. What no de
 * The turbulence is that which the environment declares (`uavsim.plants.air`), at the height of cruise, along the flight
   path: of the wind's axes, u where the rail points along the wind and v where it points across.
 * So is the humidity of the air.
-* How an aircraft lifts is known of fw8, by regression on four of its flights, and of a rig that has a wing, which gusts
-  do not move. Any other is one of the light UAVs: 60 to 300 N/m² of wing loading at a lift slope of 4.5 to 5.5.
+* How an aircraft lifts is known of fw8 and fw25, by regression on four flights of each, and of a rig that has a wing,
+  which gusts do not move. Any other is one of the light UAVs: 60 to 300 N/m² of wing loading, lift slope 4.5 to 5.5.
 * Where the readings of a thermal differential sensor end, and how coarse they are, depends on the absolute pressure: it
   is that of the field.
 """
@@ -35,8 +35,12 @@ ENDS = 0.98
 GROWN = 0.3  # share of the mean wind's growth along the path that is not known: place, veer and the aircraft's heading
 DECLARED = 0.1  # share of the mean wind that a declared one is off by: a hand anemometer, gusts between its looks
 # a, kg/m², α₀, rad, and their standard deviations (`AidedSettings`): of fw8, whose α is within 0.011 of the law at any
-# time (pitch rate, wings that twist), and of light UAVs. By hand
-FW8 = {"lift_slope": 9.45, "lift_zero": -0.0695, "lift_slope_sd": 0.0, "lift_zero_sd": 0.01}
+# time (pitch rate, wings that twist), of fw25, whose α is within 0.004 of it from 46 to 211 m/s (what the Mach number
+# adds to the slope counts where α is small), and of light UAVs. By hand
+KNOWN = {
+    "fw8": {"lift_slope": 9.45, "lift_zero": -0.0695, "lift_slope_sd": 0.0, "lift_zero_sd": 0.01},
+    "fw25": {"lift_slope": 25.0, "lift_zero": 0.0101, "lift_slope_sd": 0.0, "lift_zero_sd": 0.01},
+}
 LIGHT = {"lift_slope": 7.5, "lift_zero": -0.06, "lift_slope_sd": 3.0, "lift_zero_sd": 0.03}
 RIG_SD = 0.03  # rad, of a rig's α₀: its motor pulls along the path and carries some of what the lift seems to. By hand
 FASTER = 4.0  # times the airspeed that is held: 128 m/s for 32, which no dive of such an aircraft reaches
@@ -255,7 +259,7 @@ def _lift(scenario: Scenario) -> dict[str, float]:
     aided, rig = scenario.estimator.aided, scenario.plant.own
     if aided.lift_slope is not None and aided.lift_zero is not None:
         return {}
-    known = FW8 if scenario.aircraft.model == "fw8" else LIGHT
+    known = KNOWN.get(scenario.aircraft.model, LIGHT)
     if isinstance(rig, FlightPathSettings):
         vertical = deviations(scenario.environment.turbulence_wind_20ft, scenario.flight_computer.height)[1]
         known = {

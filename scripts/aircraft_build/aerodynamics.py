@@ -21,6 +21,7 @@ import numpy as np
 
 from .fuselage import Fuselage
 from .geometry import WING_POSITIONS, Geometry, Vector, sweep
+from .mach import mach_tables
 from .mass import centre_of_gravity
 from .shape import airplane, fin_shape, tail_shape, wing_shape
 
@@ -53,6 +54,7 @@ def tables(geometry: Geometry) -> Tables:
     Over `WING_POSITIONS`: Cmq of the wing at the linear angle of attack; its Cl per CL β (sweep-roll); 2 l/c of the
     tail (tail-arm) and what the downwash lags (downwash-lag), over q c/2V and α' c/2V; -l of the fin, ft (fin-arm);
     b/b(w) (span-ratio).
+    Of an aircraft for which it counts, over the Mach number: mach-wing, mach-tail, mach-fin, drag-rise (`mach`).
     Over `LOCAL`: forces of one half of the tail (tail-normal, tail-axial), the fin's side force (fin-side).
     Over `SIDESLIPS`: fuselage-side and fuselage-yaw. Over `HEIGHTS`: ground-lift, ground-drag, ground-downwash.
     """
@@ -61,7 +63,8 @@ def tables(geometry: Geometry) -> Tables:
     single = [_of_position(geometry, w) for w in WING_POSITIONS]
     over_wing = {name: np.array([[values[name]] for values in single]) for name in single[0]}
     others = _of_local_flow(geometry) | _of_side(geometry) | ground(geometry, np.array(HEIGHTS))
-    return over_alpha | over_wing | {name: values[:, np.newaxis] for name, values in others.items()}
+    single_columns = {name: values[:, np.newaxis] for name, values in others.items()}
+    return over_alpha | over_wing | single_columns | mach_tables(geometry)
 
 
 class Model:

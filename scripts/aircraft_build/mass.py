@@ -56,9 +56,12 @@ def panel_masses(geometry: Geometry) -> tuple[PointMass, PointMass]:
 
 
 def centre_of_gravity(geometry: Geometry, w: float) -> float:
-    """Structural x (m) of the centre of gravity of the whole at wing position w."""
+    """Structural x (m) of the centre of gravity of the whole at wing position w, with a full tank if it has one."""
     body = fixed_body(geometry)
     mass, moment = body.mass, body.mass * body.centre[0]
+    if "turbine" in geometry:
+        mass += geometry["turbine"]["fuel"]
+        moment += geometry["turbine"]["fuel"] * geometry["turbine"]["tank"][0]
     for m, out, forward in panel_masses(geometry):
         mass += 2 * m
         moment += 2 * m * place(geometry, w, out, forward)[0]

@@ -23,6 +23,7 @@ import numpy as np
 from .aerodynamics import ALPHAS, HEIGHTS, LOCAL, SIDESLIPS, Tables
 from .factors import factor
 from .geometry import WING_POSITIONS, Geometry
+from .mach import MACHS
 
 FOOT = 0.3048  # m
 
@@ -39,6 +40,8 @@ ROLLING, FLOW = "aero/tail-rolling-rad", "aero/tail-flow-rad"  # p y/V, and α_i
 RIGHT, LEFT = "aero/tail-right-rad", "aero/tail-left-rad"
 NORMAL_RIGHT, NORMAL_LEFT = "aero/tail-right-normal", "aero/tail-left-normal"
 AXIAL_RIGHT, AXIAL_LEFT = "aero/tail-right-axial", "aero/tail-left-axial"
+MACH = "velocities/mach"
+MACH_WING, MACH_TAIL, MACH_FIN = "aero/mach-wing", "aero/mach-tail", "aero/mach-fin"  # factors on a part's lift
 NORMAL, AXIAL = "aero/tail-normal", "aero/tail-axial"  # of both halves
 KEYS = {
     ALPHA_DEG: ALPHAS,
@@ -46,13 +49,14 @@ KEYS = {
     GROUND: HEIGHTS,
     BODY_SLIP: np.radians(SIDESLIPS),
     **dict.fromkeys((FIN_SLIP, RIGHT, LEFT), np.radians(LOCAL)),
+    MACH: MACHS,
 }
 """Keys of a table's rows, by the property that they are of."""
 
 
 def aerodynamics_xml(geometry: Geometry, t: Tables) -> str:
     """Write what is worked out once a step, and the six axes."""
-    functions = _flow(t) | _fin(geometry, t) | _tail(geometry, t)
+    functions = _compressibility(t) | _flow(t) | _fin(geometry, t) | _tail(geometry, t)
     axes = _forces(t) | _moments(geometry, t)
     return (
         "  <aerodynamics>\n"
@@ -71,6 +75,17 @@ def _frame(axis: str) -> str:
     return ' frame="STABILITY"' if axis in ("X", "Y", "Z") else ""
 
 
+def _compressibility(t: Tables) -> dict[str, str]:
+    """The factors of the Mach number; none of a slow aircraft."""
+    factors = {MACH_WING: "mach-wing", MACH_TAIL: "mach-tail", MACH_FIN: "mach-fin"}
+    return {name: _table(table, t, MACH) for name, table in factors.items() if table in t}
+
+
+def _lifted(t: Tables, factor_of: str, value: str) -> str:
+    """A part's lift, or what goes with it, at the Mach number; as it is of a slow aircraft."""
+    return _product(factor_of, value) if "mach-wing" in t else value
+
+
 def _flow(t: Tables) -> dict[str, str]:
     """Rates in the air, pressures, the height over the ground, and the wing's lift."""
     return {
@@ -80,7 +95,7 @@ def _flow(t: Tables) -> dict[str, str]:
         UPRIGHT: _product("aero/qbarUW-psf", AREA),
         SIDEWAYS: _product("aero/qbarUV-psf", AREA),
         GROUND: _product("aero/h_b-mac-ft", _table("span-ratio", t, WING)),
-        WING_LIFT: _table("CL", t, ALPHA_DEG),
+        WING_LIFT: _lifted(t, MACH_WING, _table("CL", t, ALPHA_DEG)),
     }
 
 
@@ -91,23 +106,23 @@ def _fin(geometry: Geometry, t: Tables) -> dict[str, str]:
     return {
         BODY_SLIP: _of("atan2", v, u),
         FIN_SLIP: _of("atan2", _sum(v, rolling, yawing), u),
-        FIN_SIDE: _table("fin-side", t, FIN_SLIP),
+        FIN_SIDE: _lifted(t, MACH_FIN, _table("fin-side", t, FIN_SLIP)),
     }
 
 
 def _tail(geometry: Geometry, t: Tables) -> dict[str, str]:
     """The flow at the two halves of the tail, and their forces in body axes."""
-    downwash = _product(_table("epsilon", t, ALPHA_DEG), _table("ground-downwash", t, GROUND))
+    downwash = _product(_lifted(t, MACH_WING, _table("epsilon", t, ALPHA_DEG)), _table("ground-downwash", t, GROUND))
     pitching = _product(_table("tail-arm", t, WING), Q)
-    late = _product(_table("downwash-lag", t, WING), "aero/alphadot-rad_sec")
+    late = _product(_lifted(t, MACH_WING, _table("downwash-lag", t, WING)), "aero/alphadot-rad_sec")
     deflection = {RIGHT: "fcs/tail-right-rad", LEFT: "fcs/tail-left-rad"}
     return {
         FLOW: _sum(_difference(ALPHA, downwash), _product(BY_CHORD, COS, _sum(pitching, late))),
         ROLLING: _product(2 * _tail_y(geometry) / geometry["reference"]["span"], BY_SPAN, COS, P),
         RIGHT: _sum(FLOW, ROLLING, deflection[RIGHT]),
         LEFT: _sum(_difference(FLOW, ROLLING), deflection[LEFT]),
-        NORMAL_RIGHT: _table("tail-normal", t, RIGHT),
-        NORMAL_LEFT: _table("tail-normal", t, LEFT),
+        NORMAL_RIGHT: _lifted(t, MACH_TAIL, _table("tail-normal", t, RIGHT)),
+        NORMAL_LEFT: _lifted(t, MACH_TAIL, _table("tail-normal", t, LEFT)),
         AXIAL_RIGHT: _sum(_table("tail-axial", t, RIGHT), _product(NORMAL_RIGHT, deflection[RIGHT])),
         AXIAL_LEFT: _sum(_table("tail-axial", t, LEFT), _product(NORMAL_LEFT, deflection[LEFT])),
         NORMAL: _sum(NORMAL_RIGHT, NORMAL_LEFT),
@@ -118,7 +133,8 @@ def _tail(geometry: Geometry, t: Tables) -> dict[str, str]:
 def _forces(t: Tables) -> dict[str, dict[str, str]]:
     """Drag, side force and lift."""
     induced = _product(WING_LIFT, WING_LIFT, _table("ground-drag", t, GROUND))
-    drag = _sum(_table("CD", t, ALPHA_DEG), induced, _product(SIN, NORMAL), _product(COS, AXIAL))
+    rise = [_table("drag-rise", t, MACH)] if "drag-rise" in t else []
+    drag = _sum(_table("CD", t, ALPHA_DEG), *rise, induced, _product(SIN, NORMAL), _product(COS, AXIAL))
     wing = _product(WING_LIFT, _table("ground-lift", t, GROUND))
     lift = _sum(wing, _difference(_product(COS, NORMAL), _product(SIN, AXIAL)))
     return {
@@ -137,10 +153,12 @@ def _moments(geometry: Geometry, t: Tables) -> dict[str, dict[str, str]]:
     rolling = _sum(_product(P, _table("Clp", t, ALPHA_DEG)), _product(R, _table("Clr", t, ALPHA_DEG)))
     yawing = _sum(_product(P, _table("Cnp", t, ALPHA_DEG)), _product(R, _table("Cnr", t, ALPHA_DEG)))
     swept = _product(_table("sweep-roll", t, WING), COS, WING_LIFT, BETA)
-    roll = _sum(swept, _product(BY_SPAN, rolling), _product(y, _difference(NORMAL_LEFT, NORMAL_RIGHT)))
-    pitching = _product(BY_CHORD, Q, _table("Cmq", t, WING))
-    pitch = _sum(_table("Cm", t, ALPHA_DEG), pitching, _product(-tail, NORMAL))
-    yaw = _sum(_product(BY_SPAN, yawing), _product(y, _difference(AXIAL_RIGHT, AXIAL_LEFT)))
+    roll = _sum(
+        swept, _product(BY_SPAN, _lifted(t, MACH_WING, rolling)), _product(y, _difference(NORMAL_LEFT, NORMAL_RIGHT))
+    )
+    pitching = _product(BY_CHORD, Q, _lifted(t, MACH_WING, _table("Cmq", t, WING)))
+    pitch = _sum(_lifted(t, MACH_WING, _table("Cm", t, ALPHA_DEG)), pitching, _product(-tail, NORMAL))
+    yaw = _sum(_product(BY_SPAN, _lifted(t, MACH_WING, yawing)), _product(y, _difference(AXIAL_RIGHT, AXIAL_LEFT)))
     side = _sum(_product(-fin, FIN_SIDE), _table("fuselage-yaw", t, BODY_SLIP))
     return {
         "ROLL": {"roll": _product(UPRIGHT, SPAN, roll), "fin-roll": _product(SIDEWAYS, SPAN, z, FIN_SIDE)},

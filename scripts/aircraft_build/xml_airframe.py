@@ -43,7 +43,9 @@ def mass_xml(geometry: Geometry) -> str:
 
 
 def propulsion_xml(geometry: Geometry) -> str:
-    """Write motor and propeller at their place; no tanks."""
+    """Write motor and propeller at their place, without tanks, or a turbine with its tank."""
+    if "turbine" in geometry:
+        return _turbine(geometry)
     name, sense = geometry["name"], geometry["propeller"]["sense"]
     where = _location(geometry["motor"]["position"])
     return (
@@ -53,12 +55,23 @@ def propulsion_xml(geometry: Geometry) -> str:
     )
 
 
+def _turbine(geometry: Geometry) -> str:
+    """Write turbine and tank."""
+    name, turbine = geometry["name"], geometry["turbine"]
+    return (
+        f'  <propulsion>\n    <engine file="{name}_turbine">\n      <feed>0</feed>\n'
+        f'      <thruster file="{name}_jet">{_location(turbine["position"])}</thruster>\n    </engine>\n'
+        f'    <tank type="FUEL">{_location(turbine["tank"])}<capacity unit="KG">{turbine["fuel"]}</capacity>'
+        f'<contents unit="KG">{turbine["fuel"]}</contents></tank>\n  </propulsion>\n'
+    )
+
+
 def reactions_xml(geometry: Geometry) -> str:
     """Write what the launcher and the opening wing do to the aircraft.
 
     Positive: push forwards, shoes lift the aircraft or push it right, the rail's moment rolls it right. The wing's
     moment has magnitude 1 and the components l, m, n, which systems/wing.xml sets. The excess thrust is what
-    factor/thrust adds to the propeller's, at its place and along the body's axis as that is.
+    factor/thrust adds to the propeller's or the jet's, at its place and along the body's axis as that is.
     """
     forces = [("push", "push", (1, 0, 0))]
     for shoe in ("front", "rear"):
@@ -70,12 +83,17 @@ def reactions_xml(geometry: Geometry) -> str:
     ]
     lines += [
         f'    <force name="excess-thrust" frame="BODY">{excess_thrust_xml()}'
-        f"{_location(geometry['motor']['position'])}{_direction((1, 0, 0))}</force>",
+        f"{_location(_thrust_at(geometry))}{_direction((1, 0, 0))}</force>",
         f'    <moment name="rail-roll" frame="BODY">{_direction((1, 0, 0))}</moment>',
         '    <moment name="wing-inertia" frame="BODY"><function><value>1</value></function>'
         f"{_direction((0, 0, 0))}</moment>",
     ]
     return "  <external_reactions>\n" + "\n".join(lines) + "\n  </external_reactions>\n"
+
+
+def _thrust_at(geometry: Geometry) -> Iterable[float]:
+    where: Iterable[float] = geometry["turbine" if "turbine" in geometry else "motor"]["position"]
+    return where
 
 
 def _location(position: Iterable[float], name: str = "") -> str:

@@ -7,6 +7,7 @@ from .factors import factors_xml
 from .geometry import WING_POSITIONS, Geometry
 from .mass import panel_masses
 from .trim import trim_deflections
+from .xml_engine import NEWTON
 
 INCHES = 1 / 0.0254  # in/m, exact
 KG_TO_LB = 1.0 / 0.45359237  # exact, international pound
@@ -21,7 +22,8 @@ AIR = "".join(f'    <property value="0">air/{axis}-rad_sec</property>\n' for axi
 def systems_xml(geometry: Geometry, t: Tables) -> str:
     """Write the system of constants and trim, and name the hand-written ones."""
     return (
-        f'  <system name="constants">\n{_constants(geometry)}{AIR}{factors_xml()}{_trim(geometry, t)}  </system>\n'
+        f'  <system name="constants">\n{_constants(geometry)}{AIR}{factors_xml()}{_trim(geometry, t)}'
+        f"{_started(geometry)}  </system>\n"
         '  <system file="wing"/>\n  <system file="stabiliser"/>\n'
     )
 
@@ -68,6 +70,31 @@ def _stabiliser(geometry: Geometry) -> dict[str, float]:
         "ap/gain/roll-integral-per_sec": gains["roll_integral"],
         "ap/gain/roll-rate-sec": gains["roll_rate"],
     }
+
+
+def _started(geometry: Geometry) -> str:
+    """Write that a turbine runs from the start, idles until the throttle opens, and burns what it should.
+
+    JSBSim lets no turbine burn less than 107 lb/h (thrust/lbf)^0.2, which a small one does not at full thrust: what is
+    too much flows back into the tank.
+    """
+    if "turbine" not in geometry:
+        return ""
+    turbine, hour = geometry["turbine"], 3600.0
+    idle = turbine["idle_flow"] * KG_TO_LB
+    full = turbine["consumption"] * turbine["thrust"] / hour * KG_TO_LB
+    per_thrust = (full - idle) / (turbine["thrust"] * NEWTON)
+    return (
+        '    <channel name="turbine">\n'
+        '      <fcs_function name="fcs/turbine-runs"><function><value>1</value></function>\n'
+        "        <output>propulsion/engine/set-running</output></fcs_function>\n"
+        '      <fcs_function name="fcs/turbine-spares"><function><difference>\n'
+        f"        <property>propulsion/engine/fuel-flow-rate-pps</property><value>{idle:.7g}</value>\n"
+        f"        <product><value>{per_thrust:.7g}</value><max><value>0</value>"
+        "<property>propulsion/engine/thrust-lbs</property></max></product>\n"
+        "        </difference></function><output>propulsion/tank/external-flow-rate-pps</output></fcs_function>\n"
+        "    </channel>\n"
+    )
 
 
 def _trim(geometry: Geometry, t: Tables) -> str:

@@ -132,7 +132,7 @@ def test_jitter_is_told_and_evened_out(written):
         (lambda f: f.drop(columns="fy"), "lacks fy; it has t, fx, fz; say which is which with --map fy=…"),
         (lambda f: f.rename(columns=str.upper), "lacks t, fx, fy, fz; it has T, FX, FY, FZ"),
         (lambda f: f.iloc[:500], "500 rows of numbers are too few; at least 1000 are needed"),
-        (lambda f: f.iloc[:0], "holds no numbers"),
+        (lambda f: f.iloc[:0], "no line of numbers below it"),
         (lambda f: f.assign(fx="a"), "column 'fx' holds no numbers"),
         (lambda f: f.iloc[::-1], "t does not rise: 69.98 s comes after 69.99 s (row 2 of numbers)"),
         (lambda f: f.assign(t=f["t"].where(f.index != 40, 50.39)), "50.39 s comes after 50.39 s (row 41 of numbers)"),

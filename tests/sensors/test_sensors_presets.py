@@ -33,7 +33,7 @@ G0 = 9.80665
 
 PARTS = {
     "accelerometer": ["adxl345", "adxl359", "bmi088", "h3lis331dl", "icm-42688-p", "lsm6dso32", "mpu-6050"],
-    "pressure": ["bmp280", "bmp388", "bmp390", "bmp581", "dps368", "lps22df", "ms5611"],
+    "pressure": ["bmp280", "bmp388", "bmp390", "bmp581", "dps368", "lps22df", "ms5611", "ms5803-02ba"],
     "differential": ["dlvr-l10d", "ms4525do", "ms4525do-005d", "sdp33"],
 }
 KINDS = {
@@ -170,6 +170,7 @@ PRESSURE_ERRORS = {
     "bmp390": ((30, 125), 50, 150, 0.62, (-80, 80), 0.5, 1.5, 2, 12),
     "bmp581": ((30, 125), 10, 30, 0.5 / 3, (-30, 30), 0.5 / 3, 0.5, 10 / 3, 10),
     "ms5611": ((1, 120), 50, 150, 2 / 3, (0, 0), 0.8 / 3, 0.8, 0, 0),
+    "ms5803-02ba": ((1, 200), 100, 300, 2 / 3, (0, 0), 0.8 / 3, 0.8, 0, 0),  # twice the MS5611's: assumed
     "dps368": ((30, 120), 100, 300, 0.5, (-240, 240), 0.5, 1.5, 0, 0),
     "lps22df": ((26, 126), 20, 60, 0.45, (-15, 15), 1.5, 4.5, 0, 0),
 }
@@ -656,7 +657,7 @@ def test_descriptions_are_frozen_plain_numbers():
         (
             lambda: PressureSettings(preset="adxl345").description(),
             "accelerometer",
-            "bmp280, bmp388, bmp390, bmp581, dps368, lps22df, ms5611",
+            "bmp280, bmp388, bmp390, bmp581, dps368, lps22df, ms5611, ms5803-02ba",
         ),
     ],
 )

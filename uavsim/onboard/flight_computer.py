@@ -104,7 +104,7 @@ class FlightComputerSettings:
         Roll of the aircraft on the rail as the crew believes it, degrees.
     """
 
-    airspeed: Annotated[float, Interval(ge=10, le=100)] = 32.0
+    airspeed: Annotated[float, Interval(ge=10, le=280)] = 32.0
     stroke_end_level_g: Annotated[float, Interval(ge=0.1, le=10)] = 1.0
     stroke_end_mean: Annotated[float, Interval(ge=0.001, le=0.1)] = 0.010
     stroke_end_hold: Annotated[float, Interval(ge=0.001, le=0.5)] = 0.020

@@ -78,6 +78,7 @@ class Free:
         self._engaged = [name for name in ("ap/engaged", "fcs/throttle-cmd-norm") if name in catalogue]
         self.height = HEIGHT
         self.speed = SPEED
+        self.fdm["propulsion/fuel_freeze"] = 1.0  # a turbine that idles would make it lighter from look to look
         self.fdm.set_dt(DT)
         self.fdm["simulation/integrator/rate/rotational"] = TWO_STEPS
         self.start(np.array([100.0, 0, 0, 0, 0, 0, 0, 0]))

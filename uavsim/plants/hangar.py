@@ -44,7 +44,7 @@ def find_aircraft(model: str) -> Path:
         if model and os.path.isfile(folder / f"{folder.name}.xml"):
             return folder.resolve()
     known = aircraft()
-    near = get_close_matches(model, known, n=1, cutoff=0.3)
+    near = get_close_matches(model.lower(), known, n=1, cutoff=0.3)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise ValueError(f"unknown aircraft {model!r}; {hint}packaged: {', '.join(known)}; or the path of a folder")
 
