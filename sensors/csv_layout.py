@@ -38,7 +38,8 @@ DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d+)?)?(?:Z|[-+]\
 CLOCK = re.compile(r"\d{1,2}:\d\d:\d\d(?:[.,]\d+)?")
 UNIT = re.compile(
     r"-|1|[\[(].{0,12}[\])]|%|[mµun]?s|sec|seconds?|m|ft|k?m/h|kts?|(?:m|ft)/s|(?:c?m|ft|[mµ]?g)/?(?:s(?:\^|\*\*)?-?2|s²|s/s)?"
-    r"|m?g|gees?|[hkm]?pa|m?bar|psi|k|[°º]?[cfk]|deg ?[cfk]?|rad|(?:deg|rad|°|º)/s|dps|m?v|m?a|hz|lsb|counts?|raw",
+    r"|m?g|gees?|[hkm]?pa|m?bar|psi|k|[°º]?[cfk]|deg ?[cfk]?|rad|(?:deg|rad|°|º)/s|dps|m?v|m?a|hz|lsb|counts?|raw"
+    r"|float\d*|double|u?int\d*|number|numeric|str(?:ing)?",  # or the type that a column is of
     re.IGNORECASE,
 )
 
@@ -270,7 +271,7 @@ def _with_numbers(encoding: str, lines: Sequence[_Line], data: Sequence[_Line], 
             remarks.append("every line ends in a separator, behind which nothing stands")
         elif bare < len(names):
             remarks.append(f"there are {len(names)} names, and lines of {bare} values: the last columns are empty")
-    decimal = _decimal(rows) if best.separator != "," else "."
+    decimal = _decimal(rows)  # between commas a decimal one stands in quotes
     if names is not None and _is_commented(lines, start, names):
         remarks.append("the names stand in a comment")
     if decimal == ",":

@@ -32,6 +32,7 @@ BATCH = 100_000  # rows of a Parquet file, read at once
 ROW = 24  # B of a row of a Feather file, by which its rows are guessed
 LONGEST_REASON = 200  # characters of what a library says
 REMARK = re.compile(rb"(?:(?<=[\r\n])|^|(?<=[ \t]))[ \t]*#[^\r\n]*")
+HARD_BLANK = "\u00a0".encode()  # which some put between figures and around values
 MANY_BLANKS = re.compile(rb"[ \t]+")
 END_BLANKS = re.compile(rb"^ | (?=[\r\n])|(?<=[\r\n]) | $")
 PARTS = re.compile(r"(.*?:\d\d(?::\d\d)?)(\.\d+)?(Z|[-+][\d:]+)?")  # of a date with a time: whole, fraction, zone
@@ -168,6 +169,8 @@ class CsvTable:
         if b"\0" in block:
             self._zeros += block.count(b"\0")
             block = block.replace(b"\0", b"")
+        if HARD_BLANK in block:
+            block = block.replace(HARD_BLANK, b" ")
         if b"#" in block:
             block = REMARK.sub(b"", block)
         if self.layout.separator == BLANKS:

@@ -341,7 +341,8 @@ def test_a_telemetry_log_without_what_is_needed_says_what_it_has(tmp_path: Path)
     path = tmp_path / "flight.tlog"
     path.write_bytes(b"".join(struct.pack(">Q", 1_700_000_000_000_000 + 1_000_000 * k) + beat for k in range(50)))
     with pytest.raises(
-        ValueError, match=r"^[^\n]*has no message RAW_IMU or SCALED_IMU or HIGHRES_IMU; it has HEARTBEAT; map"
+        ValueError,
+        match=r"^[^\n]*has no message RAW_IMU or SCALED_IMU or HIGHRES_IMU[^\n]*; it has HEARTBEAT; map",
     ):
         read_log([path])
 
@@ -353,3 +354,40 @@ def test_messages_of_telemetry_are_called_by_their_names() -> None:
         assert messages[number].msgname == name
     assert name_of(0) == "HEARTBEAT"
     assert name_of(60_000) == "message 60000"
+
+
+@pytest.mark.parametrize("number", [2, 3])
+def test_telemetry_of_another_accelerometer_alone_is_read(tmp_path: Path, number: int) -> None:
+    dialect = pytest.importorskip("pymavlink.dialects.v20.common")
+    link, records = dialect.MAVLink(None, srcSystem=1), []
+    for t in TIMES:
+        counts = [round(1e3 * f / 9.80665) for f in force(t)]
+        encoded = getattr(link, f"scaled_imu{number}_encode")(round(1e3 * t), *counts, *([0] * 6))
+        records.append(struct.pack(">Q", 1_700_000_000_000_000 + round(1e6 * t)) + encoded.pack(link))
+    path = tmp_path / "flight.tlog"
+    path.write_bytes(b"".join(records))
+    assert_as_it_was(read_log([path]), set(), 1e-3)
+
+
+def test_a_map_that_names_no_message_is_told_what_there_is(tmp_path: Path) -> None:
+    path = tmp_path / "flight.log"
+    path.write_text(
+        "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 144, 24, IMU, Qfff, TimeUS,AccX,AccY,AccZ\n"
+        + "".join(f"IMU, {20_000 * k}, 1, 2, -9.8\n" for k in range(50))
+    )
+    with pytest.raises(ValueError, match=r"^[^\n]*has no column 'ax'; it has IMU\.…; say which is which"):
+        read_log([path], "fx=ax")
+
+
+def test_the_other_accelerometer_is_turned_by_the_same_map(tmp_path: Path) -> None:
+    lines = ["FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns"]
+    lines.append("FMT, 144, 24, IMU, QBfff, TimeUS,I,AccX,AccY,AccZ")
+    for t in TIMES:
+        x, y, z = force(t)
+        z += 0.1 * np.sin(50.0 * t)  # it lives
+        lines += [f"IMU, {round(1e6 * t)}, {i}, {-y}, {x}, {z}" for i in (0, 1)]
+    path = tmp_path / "flight.log"
+    path.write_text("\n".join(lines) + "\n")
+    recording = read_log([path], "fx=IMU.AccY,fy=-IMU.AccX,fz=IMU.AccZ")
+    assert recording.remarks == ()
+    assert recording.others["IMU[1]"] == pytest.approx(recording.readings)

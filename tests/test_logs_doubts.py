@@ -158,6 +158,30 @@ def test_an_aircraft_on_its_side_is_told(axes: tuple[str, str, str], up: str) ->
     assert up in told(recorded(turned(made(), *axes)))[1]
 
 
+def test_a_sensor_that_is_mounted_askew_is_told() -> None:
+    readings = made(peak=5.5)
+    c, s = np.cos(np.radians(45.0)), np.sin(np.radians(45.0))
+    readings[:, 1:3] = readings[:, 1:3] @ np.array([[c, s], [-s, c]])
+    found, said = told(recorded(readings))
+    assert found == []
+    assert "lies between two axes, +x" in said
+    assert "askew" in said
+
+
+def test_an_axis_that_never_changes_is_told() -> None:
+    readings = made()
+    readings[:, 1] = 0.0
+    assert "fx repeats 0 m/s² from the first row to the last" in told(recorded(readings))[1]
+    readings = made()
+    readings[:, 2] = 0.0
+    assert told(recorded(readings))[1] == ""  # the detector does not read it
+
+
+def test_a_pull_against_the_launch_may_be_a_wrap() -> None:
+    readings = made(peak=-3.0)
+    assert "an arrest, or a wrap" in told(recorded(readings))[1]
+
+
 # -- what readings cannot show ---------------------------------------------------------------------------------------
 
 

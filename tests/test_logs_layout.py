@@ -178,3 +178,26 @@ def test_columns_of_the_same_name_are_told(tmp_path: Path) -> None:
     said = " | ".join(recording.remarks)
     assert "columns have the same name: 'fx' (2 columns)" in said
     assert read_log([path], "fx=fx.1").readings[0, 1] == 7.0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,fx,fy,fz\nfloat,double,float32,float\n" + "".join(f"{0.01 * k},1.5,2,-9.8\n" for k in range(100)),
+        "t,fx,fy,fz\n" + "".join(f"{0.01 * k}\u00a0,1.5\u00a0,2,-9.8\n" for k in range(100)),
+        "t,fx,fy,fz\n" + "".join(f'"0,{k:02d}","1,5","2,0","-9,8"\n' for k in range(100)),
+    ],
+    ids=["a row of types", "hard blanks", "decimal commas in quotes"],
+)
+def test_values_are_read_through_what_stands_around_them(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(text, encoding="utf-8")
+    assert read_log([path]).readings[-1] == pytest.approx([0.99, 1.5, 2.0, -9.8])
+
+
+def test_times_in_minutes_are_doubted(tmp_path: Path) -> None:
+    table = frame(rate=100.0)
+    path = tmp_path / "a.csv"
+    table.assign(t=table["t"] / 60.0).to_csv(path, index=False)
+    assert "is t in s? Map t=…*60 if it is in minutes" in " | ".join(read_log([path]).remarks)
+    assert len(detections(read_log([path], "t=t*60"))) == 1

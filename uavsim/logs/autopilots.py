@@ -240,7 +240,7 @@ _LOW = "a radio link passes it on at a low rate"
 MAVLINK = Autopilot(
     "tlog",
     (("time", 1.0),),
-    {"RAW_IMU": _XYZ, "SCALED_IMU": _XYZ, "HIGHRES_IMU": _XYZ},
+    dict.fromkeys(("RAW_IMU", "SCALED_IMU", "HIGHRES_IMU", "SCALED_IMU2", "SCALED_IMU3"), _XYZ),
     {
         "SCALED_PRESSURE": {
             "p_static": _plain("press_abs", 100.0, 0.0, f"brought from hPa to Pa; {_LOW}"),
@@ -260,5 +260,5 @@ MAVLINK = Autopilot(
             "ground_speed": _plain("groundspeed"),
         },
     },
-    signs={"RAW_IMU": 1e-3 * STANDARD_GRAVITY, "SCALED_IMU": 1e-3 * STANDARD_GRAVITY},
+    signs=dict.fromkeys(("RAW_IMU", "SCALED_IMU", "SCALED_IMU2", "SCALED_IMU3"), 1e-3 * STANDARD_GRAVITY),
 )

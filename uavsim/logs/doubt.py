@@ -51,7 +51,13 @@ def doubted(recording: Recording, settings: DetectorSettings, evidence: Evidence
     """
     seen = collected(recording.readings, recording.rate) if evidence is None else evidence
     rest = seen.rest()
-    remarks = [*_unit(rest, recording), *_repeats(seen), *_counted(recording), *_others(recording)]
+    remarks = [
+        *_unit(rest, recording),
+        *_repeats(seen),
+        *_dead(seen, settings),
+        *_counted(recording),
+        *_others(recording),
+    ]
     recording = taken(recording, seen)
     remarks += _range(recording, settings)
     return replace(recording, remarks=(*recording.remarks, *remarks))
@@ -190,6 +196,16 @@ def _repeats(seen: Evidence) -> Iterator[str]:
             f"{what} for {longest.end - longest.start:.3g} s from {longest.start:.3f} s on ({longest.rows} rows)"
             f"{more}: what happened meanwhile is not in the log, and no launch can be seen in it"
         )
+
+
+def _dead(seen: Evidence, settings: DetectorSettings) -> Iterator[str]:
+    """Tell axes that the detector reads and that never change."""
+    for axis, reads in seen.dead.items():
+        if settings.axes != "any" and axis[1] in {signed[1] for signed in settings.axes}:
+            yield (
+                f"{axis} repeats {reads:.4g} m/s² from the first row to the last, while other axes live: it is no "
+                "reading, and no launch can be seen along it; map it to one that is"
+            )
 
 
 def backwards(recording: Recording, settings: DetectorSettings, detections: Sequence[float]) -> list[str]:

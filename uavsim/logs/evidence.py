@@ -190,6 +190,13 @@ class Evidence:
                 found[axis] = spells
         return found
 
+    @property
+    def dead(self) -> dict[str, float]:
+        """Axes that read the same from the first row to the last while others live, by name, with what they read."""
+        lives = self._most > self._least
+        ends = zip(AXES, self._least.tolist(), lives.tolist(), strict=True)
+        return {axis: reads for axis, reads, alive in ends if not alive and np.isfinite(reads) and lives.any()}
+
     def rest(self) -> Rest:
         """Return what quiet blocks read whose mean is known well enough; along axes that the log has."""
         table = np.concatenate(self._blocks) if self._blocks else np.empty((0, 7))

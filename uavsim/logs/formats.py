@@ -164,6 +164,8 @@ def _autopilot(path: Path, kind: Autopilot, read: Callable[[set[str]], Logged], 
         if key in asked or key[0] in kind.force or table.usual.keys() - {"t"}:
             tables.append(table)
             taken |= table.usual.keys() - {"t"}
+    if not tables:  # the map names no message of it: what there is is told by whoever looks for its columns
+        tables = [Table(str(path), tuple(f"{name}.…" for name in log.names), lambda _: {}, {})]
     tables += _others(path, kind, log, chosen)
     if log.damage:
         until = f"; it ends at {end:.3f} s" if np.isfinite(end) else ""

@@ -19,6 +19,7 @@ from uavsim.truth import STANDARD_GRAVITY
 
 SLOWEST, FASTEST = 1.0, 20_000.0  # Hz, median rates that are understood
 SLOW = 20.0  # Hz, below which a stroke of 0.3 s has a handful of readings
+FAST = 5_000.0  # Hz, by hand: accelerometers of autopilots give up to 4 kHz; 100 Hz read so if t is in minutes
 OTHER = "other "  # before the label of a message of another accelerometer
 LOOKS_LIKE_G = (0.7, 1.4)  # median of |f|: at rest and in level flight it is 1 in g and 9.8 in m/s²
 TOO_MUCH = 400.0  # m/s², median of |f|: no flight feels 40 g for most of the time, counts and mg read so
@@ -78,7 +79,9 @@ def recording_of(paths: Sequence[Path], mapping: str | None, tables: Sequence[Ta
     pieces = []
     for table in tables:
         with named(table.name):
-            piece = _piece(table, sources, alone=len(tables) == 1, remarks=remarks)
+            piece = _piece(table, _of_other(table, sources), alone=len(tables) == 1, remarks=remarks)
+        if piece is None and table.label.startswith(OTHER):
+            continue  # the map is of columns that it does not have
         if piece is None:
             remarks.append(f"{table.name} holds none of {', '.join(AXES)} with a time and is left out")
         else:
@@ -152,6 +155,15 @@ def _piece(table: Table, sources: Mapped, *, alone: bool, remarks: list[str]) ->
     if not table.named:
         origins["t"] = Origin(clock)
     return Piece(table.name, rows.t, force, factors, series, rows.cuts, other, origins)
+
+
+def _of_other(table: Table, sources: Mapped) -> Mapped:
+    """Return a map as it is for another accelerometer: of the same fields of its own message."""
+    if not table.label.startswith(OTHER):
+        return sources
+    own = table.label.removeprefix(OTHER)
+    first = f"{own.partition('[')[0]}."
+    return {ours: replace(one, column=one.column.replace(first, f"{own}.", 1)) for ours, one in sources.items()}
 
 
 def is_scaled(held: Mapped, axes: Sequence[str]) -> bool:
@@ -404,6 +416,8 @@ def _remarks(readings: Array) -> list[str]:
     if (share := float(np.mean(same)) if same.size else 0.0) > SAMPLED_AND_HELD:
         said.append(f"readings repeat: {share:.0%} of the rows are as those before, as of a sensor slower than the log")
     rate = 1.0 / max(float(np.median(np.diff(readings[:, 0]))), 1e-9) if len(readings) > 1 else np.inf
+    if rate > FAST:
+        said.append(f"{rate:.4g} readings a second are many: is t in s? Map t=…*60 if it is in minutes")
     if rate < SLOW:
         said.append(f"{rate:.3g} readings a second are few: a stroke may lie between two of them")
     return said

@@ -57,6 +57,8 @@ MESSAGES = {
         ("<u2", "hdg"),
     ),
     74: _message("VFR_HUD", 20, ("<f4", "airspeed groundspeed alt climb"), ("<i2", "heading"), ("<u2", "throttle")),
+    116: _message("SCALED_IMU2", 76, ("<u4", "time_boot_ms"), ("<i2", IMU)),
+    129: _message("SCALED_IMU3", 46, ("<u4", "time_boot_ms"), ("<i2", IMU)),
     105: _message(
         "HIGHRES_IMU", 93, ("<u8", "time_usec"),
         ("<f4", f"{IMU} abs_pressure diff_pressure pressure_alt temperature"),

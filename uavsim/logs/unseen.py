@@ -29,6 +29,7 @@ STEADY, STRETCHES = (0.7, 0.1), 6  # s before a detection along another axis, in
 UNSTEADY = 0.5 * G0  # m/s², by which the means of the stretches differ in flight; those of a rail that shakes do not
 PULL, PULL_FOR = 1.5 * G0, (0.08, 1.0)  # m/s² and s of a pull against the launch that a reading that wraps shows, too
 PULL_EDGE = 0.03  # s, or two readings, in which it begins or ends
+SKEW = 0.34  # of a force, along a second axis: 20° off the first
 WORTH = 1.3 * G0  # m/s², force along an axis from which on it is looked at
 
 
@@ -109,7 +110,8 @@ class Unseen:
         ]
         told = {one.axis for one in self.nearest}
         against = [opposite(axis) for axis in self.axes if len(self.axes) == 1 and opposite(axis) not in told]
-        return [*others, *(said for axis in against for said in _pulls(recording, axis))]
+        askew = [] if others else _askew(recording, self)
+        return [*others, *askew, *(said for axis in against for said in _pulls(recording, axis))]
 
 
 def forward_in(document: Mapping[str, Any]) -> str | None:
@@ -117,6 +119,29 @@ def forward_in(document: Mapping[str, Any]) -> str | None:
     others = [one["axis"] for one in document["nearest"] if one["axis"] not in document["axes"]]
     greatest = {one["axis"]: one["greatest"] for one in document["seen"]}
     return max(others, key=lambda axis: greatest[axis], default=None)
+
+
+def _askew(recording: Recording, why: Unseen) -> list[str]:
+    """Name a force that is above the level between two axes, and along neither of them."""
+    if why.level is None:
+        return []
+    n = max(1, round(MEAN * recording.rate))
+    force = np.nan_to_num(recording.readings[:, 1:])
+    if len(force) <= n:
+        return []
+    away = force - np.median(force, axis=0)
+    mean = np.column_stack([np.convolve(column, np.full(n, 1.0 / n), mode="same") for column in away.T])
+    at = int(np.argmax(np.linalg.norm(mean, axis=1)))
+    push, whole = mean[at], float(np.linalg.norm(mean[at]))
+    first, second = np.argsort(-np.abs(push))[:2].tolist()
+    if whole < why.level or abs(push[second]) < SKEW * whole:
+        return []
+    named = [f"{'+' if push[i] > 0.0 else '−'}{'xyz'[i]} {abs(push[i]) / G0:.3g} g" for i in (first, second)]
+    return [
+        f"a force of {whole / G0:.3g} g at {recording.readings[at, 0]:.3f} s lies between two axes, "
+        f"{' and '.join(named)}: a sensor mounted askew; turn its readings before they are replayed, for a map "
+        "turns by quarters only"
+    ]
 
 
 def _pulls(recording: Recording, axis: str) -> list[str]:
