@@ -119,7 +119,8 @@ def test_wrong_geometry_is_one_line(monkeypatch, capsys, tmp_path, flight, old, 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("fw9",), "packaged: fw8"),
+        (("fw9",), "packaged: fw25, fw8;"),
+        (("x8",), "no geometry.toml for aircraft 'x8'"),
         (("fw8", "--sections", "xfoil"), "--sections"),
         (("fw8", "--flights", "nowhere"), "--flights: nowhere"),
         (("fw8", "--seed", "-1"), "--seed"),

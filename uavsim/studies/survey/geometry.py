@@ -112,9 +112,8 @@ def _find(name: str) -> Path:
     for folder in (hangar() / name, Path(name).expanduser()):
         if name and (folder / "geometry.toml").is_file():
             return folder.resolve() / "geometry.toml"
-    raise ValueError(
-        f"no geometry.toml for aircraft {name!r}; packaged: {', '.join(aircraft())}; or the path of a folder with one"
-    )
+    known = ", ".join(one for one in aircraft() if (hangar() / one / "geometry.toml").is_file())
+    raise ValueError(f"no geometry.toml for aircraft {name!r}; packaged: {known}; or the path of a folder with one")
 
 
 def _outline(data: Mapping[str, Any], folder: str) -> Outline:
