@@ -90,13 +90,12 @@ def draw(scenario: Scenario, index: int | None = None) -> Draws:
 def shaken(scenario: Scenario, draws: Draws, plant: Plant) -> tuple[float, float]:
     """Specific force that the push comes to, m/s², 0 if nothing rings, and in which time, s."""
     launcher = scenario.launcher
-    if not scenario.plant.chosen.rings:
+    if not scenario.plant.chosen.rings or launcher.misfire:
         return 0.0, launcher.rise
-    if launcher.kind != IDEAL and not launcher.misfire:
-        level, rise = plant.shakes  # type: ignore[attr-defined]  # of the plant that has a machine
-        return float(level), float(rise)
-    push = launcher.peak_specific_force_g * STANDARD_GRAVITY * draws.force_factor
-    return 0.0 if launcher.misfire else push, launcher.rise
+    if launcher.kind == IDEAL:
+        return launcher.peak_specific_force_g * STANDARD_GRAVITY * draws.force_factor, launcher.rise
+    none: tuple[float, float] = (0.0, launcher.rise)  # somebody's plant that does not say what its machine does
+    return getattr(plant, "shakes", none)
 
 
 def tare_window(scenario: Scenario, release_time: float) -> airspeed.TareWindow | None:

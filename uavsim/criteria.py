@@ -33,15 +33,14 @@ ON_GROUND = (TOUCHED, "crashed", "landed")  # how a flight ended that touched it
 
 def outcome(flight: Judged) -> str:
     """Name the first that applies, in the order of `docs/score.md`."""
-    (_, acted), exit_time, detected = _acts(flight), flight.rail_exit_time, flight.detected_time
+    (_, acted), exit_time = _acts(flight), flight.rail_exit_time
     if flight.ended in ("diverged", FAILED):
         return flight.ended
     if flight.is_rig:
         return "completed"
     if acted is not None and (exit_time is None or acted < exit_time):
         return "false_launch"
-    limit = np.inf if exit_time is None else exit_time + MISSED_AFTER
-    if flight.true_time is not None if detected is None else detected > limit:  # without a push there is none to miss
+    if _is_missed(flight):
         return "missed_launch"
     if flight.ended in ON_GROUND:
         return "landed" if _lands(flight) else "crashed"
@@ -207,6 +206,14 @@ def _too_soon(flight: Judged) -> str:
     (what, when), exit_time = _acts(flight), flight.rail_exit_time
     left = "never leaves the rail" if exit_time is None else f"leaves the rail at {exit_time:.3f} s"
     return f"{what} on the rail: at {when:.3f} s, the last shoe {left}"
+
+
+def _is_missed(flight: Judged) -> bool:
+    """Whether there was a launch, and it was not recognised in time; where nothing moves there is none to miss."""
+    exit_time, detected = flight.rail_exit_time, flight.detected_time
+    if detected is None:
+        return flight.true_time is not None
+    return exit_time is not None and detected > exit_time + MISSED_AFTER
 
 
 def _missed(flight: Judged) -> str:

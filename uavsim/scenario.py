@@ -41,6 +41,7 @@ from uavsim.plants.airframe import Airframe, read_airframe
 from uavsim.plants.airframe.properties import OF_SIMULATOR
 from uavsim.plants.choice import PlantSettings
 from uavsim.plants.hangar import find_aircraft, hangar
+from uavsim.plants.launchers.kinds import KEYS
 from uavsim.plants.launchers.push import IDEAL
 from uavsim.plants.plant import STEP_RATES
 from uavsim.plants.rail import CONTACT_FREQUENCY, DAMPING_RATIO
@@ -668,11 +669,7 @@ def _check_times(s: Scenario) -> None:
 def _check_launcher(s: Scenario) -> None:
     """Refuse keys of the launcher that are of another kind, and machines where nothing is launched."""
     launcher, plain = s.launcher, LauncherSettings()
-    machines = ("pneumatic", "bungee", "electromechanical")
-    others = [name for name in machines if name != launcher.kind]
-    if launcher.kind != IDEAL:
-        others += ["peak_specific_force_g", "rise", "fall"]
-    for name in others:
+    for name in (name for kind, names in KEYS.items() if kind != launcher.kind for name in names):
         if getattr(launcher, name) != getattr(plain, name):
             raise SettingError(
                 f"launcher.{name}: is not read by launcher.kind = {launcher.kind!r}",

@@ -35,7 +35,8 @@ class Plant(Protocol):
     failure
         What ended it from inside, one line; empty as long as it goes on.
 
-    It may have `remarks`, a list of lines that deserve a word at the start and, with more of them, at the end.
+    One with a launcher's machine may have `shakes`: the specific force that its push comes to, m/s², and in which time,
+    s. It may have `remarks`, a list of lines that deserve a word at the start and, with more of them, at the end.
     """
 
     k: int

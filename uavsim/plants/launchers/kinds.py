@@ -1,11 +1,23 @@
-"""Which launcher a scenario chooses."""
+"""Which launcher a scenario chooses, and which keys are of which."""
 
 from typing import TYPE_CHECKING
 
-from uavsim.plants.launchers.push import Load, Push
+from uavsim.plants.launchers.bungee import Bungee
+from uavsim.plants.launchers.electromechanical import Electromechanical
+from uavsim.plants.launchers.ideal import Ideal
+from uavsim.plants.launchers.pneumatic import Pneumatic
+from uavsim.plants.launchers.push import IDEAL, Load, Push
 
 if TYPE_CHECKING:
     from uavsim.plants.settings import LauncherSettings
+
+KEYS = {
+    IDEAL: ("peak_specific_force_g", "rise", "fall"),
+    "pneumatic": ("pneumatic",),
+    "bungee": ("bungee",),
+    "electromechanical": ("electromechanical",),
+}
+"""Kinds, and the keys of the launcher that no other reads."""
 
 
 def make_push(settings: "LauncherSettings", load: Load) -> Push:
@@ -16,20 +28,16 @@ def make_push(settings: "LauncherSettings", load: Load) -> Push:
     ValueError
         If it cannot move the aircraft; one line that names the key.
     """
-    from uavsim.plants.launchers.bungee import Bungee
-    from uavsim.plants.launchers.electromechanical import Electromechanical
-    from uavsim.plants.launchers.ideal import Ideal
-    from uavsim.plants.launchers.pneumatic import Pneumatic
-
     push: Push
-    if settings.kind == "pneumatic":
-        push = Pneumatic(settings.pneumatic, load)
-    elif settings.kind == "bungee":
-        push = Bungee(settings.bungee, load)
-    elif settings.kind == "electromechanical":
-        push = Electromechanical(settings.electromechanical, load)
-    else:
-        return Ideal(settings.peak_specific_force_g, settings.rise, settings.fall, load)
+    match settings.kind:
+        case "pneumatic":
+            push = Pneumatic(settings.pneumatic, load)
+        case "bungee":
+            push = Bungee(settings.bungee, load)
+        case "electromechanical":
+            push = Electromechanical(settings.electromechanical, load)
+        case _:
+            return Ideal(settings.peak_specific_force_g, settings.rise, settings.fall, load)
     weight = load.mass * load.backward
     if push.peak <= weight:
         raise ValueError(
