@@ -139,8 +139,6 @@ class DifferenceKnowledge:
 
     Attributes
     ----------
-    scale_sd : float
-        Scale error of the difference, a fraction: the part's, and what is not known of the tubes' loss.
     calibration_pressure : float
         Of a thermal part, as of `DifferentialDescription`, Pa; 0 of a membrane.
     flow, flow_pressure : float
@@ -149,7 +147,6 @@ class DifferenceKnowledge:
         Σ L/d⁴ of the tubes, 1/m³.
     """
 
-    scale_sd: float
     calibration_pressure: float
     flow: float
     flow_pressure: float
@@ -220,6 +217,9 @@ class HeadKnowledge:
         Share of the flow's warming that the thermometer reads, and its standard deviation.
     difference_sd : float
         What the pair's difference may be at rest where no tare has found it, Pa.
+    scale_sd : float
+        Scale error of what flight adds to the difference, a fraction: a tare takes off what it makes at rest. Of a
+        differential sensor with what is not known of its tubes' loss.
     difference : DifferenceKnowledge or None
         Of the differential sensor, in a head that has one.
     """
@@ -239,6 +239,7 @@ class HeadKnowledge:
     thermometer_recovery_sd: float
     difference_sd: float
     die_lag: float
+    scale_sd: float
     difference: DifferenceKnowledge | None = None
 
 
@@ -304,14 +305,21 @@ def known_of_head(settings: AirDataSettings) -> HeadKnowledge:
         thermometer_recovery=settings.thermometer_recovery,
         thermometer_recovery_sd=RECOVERY_SD if settings.thermometer_recovery > 0.0 else 0.0,
         difference_sd=hypot(total.offset_sd, static.offset_sd) if difference is None else total.offset_sd,
+        scale_sd=_scale(parts[0], settings),
         difference=difference,
     )
+
+
+def _scale(part: PressureDescription, settings: AirDataSettings) -> float:
+    """Scale error of what flight adds to a head's difference; the static pressure hardly changes beside it."""
+    if not isinstance(part, DifferentialDescription):
+        return part.scale_sd
+    return hypot(part.scale_sd, LOST_SD * share_lost(part, [tube for tube, _ in settings.tubes()], TYPICAL))
 
 
 def _known_of_difference(part: DifferentialDescription, settings: AirDataSettings) -> DifferenceKnowledge:
     tubes = [tube for tube, _ in settings.tubes()]
     return DifferenceKnowledge(
-        scale_sd=hypot(part.scale_sd, LOST_SD * share_lost(part, tubes, TYPICAL)),
         calibration_pressure=part.calibration_pressure,
         flow=part.flow,
         flow_pressure=part.flow_pressure,

@@ -371,3 +371,11 @@ def test_slow_flight_near_the_ground_is_no_shut_static_port() -> None:
     wind = ["environment.wind_speed=8", "environment.wind_from_deg=180", "environment.temperature_offset=25"]
     flight = uavsim.fly("catapult", seed=150001, overrides=[*part, *slow, *wind, "index=3941"])
     assert [e for e in flight.events if e["event"] == "airspeed_fault"] == []
+
+
+def test_what_flight_adds_has_the_scale_error_of_the_total_part() -> None:
+    """A tare takes off what it makes at rest. BMP390: 3 Pa in 10 kPa."""
+    assert believed_noise(scenario()).difference_scale_sd == pytest.approx(3e-4)
+    assert believed_noise(scenario("air_data.total.errors.scale=3")).difference_scale_sd == pytest.approx(9e-4)
+    assert believed_noise(scenario("air_data.static.errors.scale=3")).difference_scale_sd == pytest.approx(3e-4)
+    assert believed_noise(scenario("mismatch.difference_scale=0")).difference_scale_sd == 0.0

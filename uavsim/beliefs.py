@@ -147,7 +147,7 @@ def believed_noise(scenario: Scenario, calibration: Calibration = NO_CALIBRATION
         thermometer_recovery_sd=head.thermometer_recovery_sd,
         die_lag=belief.lag * head.die_lag,
         differential=head.difference is not None,
-        difference_scale_sd=0.0 if head.difference is None else belief.difference_scale * head.difference.scale_sd,
+        difference_scale_sd=belief.difference_scale * head.scale_sd,
         head=_ports(head, belief, calibration),
         covered=scenario.air_data.tare == "covered",
     )

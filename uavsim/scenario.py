@@ -106,7 +106,7 @@ class MismatchSettings:
     accelerometer_lag : float
         Factor on the age of a reading of specific force at its time stamp.
     difference_scale : float
-        Factor on the standard deviation of a differential sensor's scale error.
+        Factor on the standard deviation of the scale error of what flight adds to the pressures' difference.
     flow_through : float
         Share of what a thermal differential sensor loses by thin air and in its tubes that is undone; 0: nothing.
     gust : float

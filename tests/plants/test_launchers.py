@@ -1,17 +1,21 @@
 """What pushes, by itself: a mass on a frictionless line against closed forms, energy balances, recorded strokes."""
 
 from math import sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pytest
 
+from uavsim.cosim import draw, shaken
 from uavsim.plants.launchers.bungee import MOVING, Bungee
 from uavsim.plants.launchers.electromechanical import Electromechanical
 from uavsim.plants.launchers.pneumatic import CRITICAL, GAMMA, Pneumatic, outflow
 from uavsim.plants.launchers.push import Load, Push, through_carriage
 from uavsim.plants.launchers.settings import BungeeSettings, ElectromechanicalSettings, PneumaticSettings
 from uavsim.scenario import load_scenario
+
+if TYPE_CHECKING:
+    from uavsim.plants.plant import Plant
 
 UP = 9.81 * 0.2164  # g sin 12.5°, m/s²
 STEP = 1e-3
@@ -168,3 +172,9 @@ def test_what_cannot_be_is_said_in_a_line(overrides: tuple[str, ...], says: str)
 def test_a_rig_has_no_machine() -> None:
     with pytest.raises(ValueError, match=r"launcher\.kind: is not read by plant\.kind = 'centrifuge', a rig"):
         load_scenario("centrifuge-4g", overrides=('launcher.kind="bungee"',))
+
+
+def test_a_plant_that_does_not_say_what_its_machine_does_makes_nothing_ring() -> None:
+    """One of somebody else's flies with a bungee all the same."""
+    flown = load_scenario("catapult", overrides=('launcher.kind="bungee"',))
+    assert shaken(flown, draw(flown), cast("Plant", object())) == (0.0, flown.launcher.rise)

@@ -215,7 +215,7 @@ AIR: dict[str, Named] = {
     "thermal.lag": (10.0, *more("head.walk", 2.0 * WARMING**2 * (3.0 * math.exp(-4.0) - math.exp(-4.0 / 3.0)))),
     "rate": (50.0, *is_("head.rate", 50.0)),
 }
-OF_DIFFERENCE = "head.difference.scale_sd"
+OF_DIFFERENCE = "head.scale_sd"
 DIFFERENCE: dict[str, Named] = {
     "kind": ("differential", *is_("head.total.noise_sd", 1.5)),
     "differential.preset": ("sdp33", *is_("head.total.noise_sd", 0.2)),

@@ -136,7 +136,6 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
     head, parts = known_of_head(air), tuple(sensor.description() for sensor in air.sensors())
     one, other = head.total.noise_sd, head.static.noise_sd
     paired = _paired(air)
-    scale = 0.0 if head.difference is None else head.difference.scale_sd
     if head.difference is not None:
         by_static = by_static + by_total  # p_t moves with p_s
     pressures = {
@@ -144,7 +143,7 @@ def budget(air: AirDataSettings, conditions: Conditions | None = None, speeds: t
         "tare": by_total * _tare_sd(air, head, c, density),
         "drift": by_total * hypot(*(part.walk for part in paired)) * sqrt(c.since_tare),
         "warming": by_total * _warming_sd(air, c),
-        "position": by_total * impact * hypot(_position(head.ports, c), scale),
+        "position": by_total * impact * hypot(_position(head.ports, c), head.scale_sd),
         "lag": by_total * _lag(head.total, head.static, c, density, speed),
         "force": by_total
         * c.acceleration

@@ -100,7 +100,7 @@ class NoiseModel:
         Whether the total pressure is the sum of the static one and of a difference that one sensor reads. Then
         `total_sd`, `total_range` and `total_step` are those of the difference.
     difference_scale_sd : float
-        Scale error of that difference, a fraction.
+        Scale error of what flight adds to the difference of both pressures, a fraction.
     """
 
     total_sd: Annotated[float, Ge(0.0)]
